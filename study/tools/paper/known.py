@@ -1,32 +1,19 @@
 # What the paper is built from: the tables of one set, and the other stored sets.
 import importlib
-from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
+from analysis.core import schema
 from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
 from analysis.map.results import of
 from study.tools.merge import agreement, machine
 
 
-class Tables(dict):
-    """{table: DataFrame} of a part of a set, each read when it is asked for; empty where the set lacks it."""
-
-    def __init__(self, folder, part):
-        super().__init__()
-        self.folder, self.part = folder, part
-
-    def __missing__(self, name):
-        self[name] = machine.table(self.folder, self.part, name)
-        return self[name]
-
-
-@dataclass(frozen=True)
 class Known(Folder):
-    _tables: dict = field(default_factory=dict)
-
+    @cache
     def tables(self, part):
-        return self._tables.setdefault(part, Tables(self.folder, part))
+        """{table: DataFrame} of a part of a set; empty where the set lacks it."""
+        return {name: machine.table(self.folder, part, name) for name in schema.of_part(part)}
 
     def view(self, part="map"):
         return View(self.folder, part)

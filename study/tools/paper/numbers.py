@@ -5,16 +5,15 @@ import math
 from collections import defaultdict
 from dataclasses import dataclass
 
-import yaml
 from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
-from analysis.core.files import ROOT
 from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
+from study.core import profile as profiles
 from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
@@ -33,8 +32,7 @@ class Number:
 def numbers(known):
     """{name: Number}"""
     found = {}
-    for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits,
-                  _minutes):
+    for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
         found |= {f"{query.__name__.lstrip('_')}.{name}": one for name, one in query(known).items()}
     return {name: one if one and one.text not in NOTHING else Number(NOT_MEASURED, one.table if one else "") for name, one in found.items()}
 
@@ -42,6 +40,11 @@ def numbers(known):
 def of_rows(text, table, rows):
     """A Number of rows of a table, which name their records; None if there are no rows. `text` may be a function of the rows."""
     return Number(str(text(rows) if callable(text) else text), table, _records(rows)) if len(rows) else None
+
+
+def each(table, rows, /, **texts):
+    """`of_rows` of each text."""
+    return {name: of_rows(text, table, rows) for name, text in texts.items()}
 
 
 def count(rows, among, table):
@@ -166,15 +169,12 @@ def real(known):
     leaders = led(rows)
     leader, single = next(iter(leaders), ""), next(iter(lost), "")
     taken = scenes[(scenes.implementation == single) & scenes.scene.isin([*lost.get(single, {}).keys()])]
-    found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
-             "most": number(rows.variables.max(), 5), "said": rows.settled.fillna(False).sum(),
-             "margin": number(rows.margin.median()), "leader": leader, "leads": leaders.get(leader), "shares": shares(leaders)}
-    of_saddle = {"saddle": shares(led(saddle)), "saddle_of": len(saddle)}
-    of_single = {"single": single, "single_on": lambda _: len(lost[single]), "mean": lambda _: number(gmean(lost[single])),
-                 "worst": lambda _: number(lost[single].max()), "where": lambda _: lost[single].idxmax()}
-    return {name: of_rows(text, table, chosen) for texts, table, chosen in (
-        (found, "families/winners", rows), (of_saddle, "families/winners", saddle), (of_single, "families/scenes", taken))
-        for name, text in texts.items()}
+    return (each("families/winners", rows, mechanisms=len(rows), families=rows.family.nunique(), least=number(rows.variables.min(), 5),
+                 most=number(rows.variables.max(), 5), said=rows.settled.fillna(False).sum(), margin=number(rows.margin.median()), leader=leader,
+                 leads=leaders.get(leader), shares=shares(leaders))
+            | each("families/winners", saddle, saddle=shares(led(saddle)), saddle_of=len(saddle))
+            | each("families/scenes", taken, single=single, single_on=lambda _: len(lost[single]), mean=lambda _: number(gmean(lost[single])),
+                   worst=lambda _: number(lost[single].max()), where=lambda _: lost[single].idxmax()))
 
 
 def shares(counts):
@@ -186,9 +186,8 @@ def _size(known):
     results, cells = known.results, known.tables("map")["cells"]
     own_fill = cells[(cells.layer == "libraries") & cells.fill_asked.isna()]
     groups = summary.by_size(results, results.layer("libraries"))
-    return {"outcome": of_rows(" ".join(map_sentences.by_outcome(groups)), "map/cells", own_fill),
-            "least": of_rows(number(own_fill.variables.min(), 5), "map/cells", own_fill),
-            "most": of_rows(number(own_fill.variables.max(), 5), "map/cells", own_fill)}
+    return each("map/cells", own_fill, outcome=" ".join(map_sentences.by_outcome(groups)), least=number(own_fill.variables.min(), 5),
+                most=number(own_fill.variables.max(), 5))
 
 
 def _fill(known):
@@ -229,10 +228,8 @@ def _claims(known):
     table = known.tables("map")["claims"]
     by_id = ledger.by_id(table)
     found = {verdict: [name for name, (one, _) in by_id.items() if one == verdict] for verdict in ledger.VERDICTS}
-    return {"all": of_rows(len(by_id), "map/claims", table), "rows": of_rows(len(table), "map/claims", table),
-            "counts": of_rows(", ".join(f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names),
-                              "map/claims", table),
-            "told": of_rows(ledger.told(table), "map/claims", table)}
+    counts = (f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names)
+    return each("map/claims", table, all=len(by_id), rows=len(table), counts=", ".join(counts), told=ledger.told(table))
 
 
 def _price(known):
@@ -240,18 +237,16 @@ def _price(known):
     first = whole[0] if whole else defaultdict(str)
     rows = known.tables("map")["cells"]
     rows = rows[(rows.layer == "libraries") & (rows.winner != "")]
-    return {name: of_rows(text, "map/tidy", rows) for name, text in (("single", first["implementation"]), ("mean", number(first["mean"])),
-                                                                     ("worst", number(first["worst"])), ("cells", first["of"]))}
+    return each("map/tidy", rows, single=first["implementation"], mean=number(first["mean"]), worst=number(first["worst"]), cells=first["of"])
 
 
 def _rule(known):
     held, defaults = known.tables("families")["held"], known.tables("families")["defaults"]
     one = rules.summary(held) if len(held) else defaultdict(float)
     unknown = f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else ""
-    found = {"mean": percent(one["mean_loss"], 1), "worst": percent(one["worst_loss"]) + unknown, "within": percent(one["within"]),
-             "families": one["families"], "scenes": one["scenes"]}
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
-    return {name: of_rows(text, "families/held", held) for name, text in found.items()} | {
+    return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
+                families=one["families"], scenes=one["scenes"]) | {
         "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
 
@@ -272,7 +267,7 @@ def _window(known):
     rows, maps = known.tables("stability")["windows"], known.tables("stability")["maps"]
     rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & (rows.status == "ok")]
     largest = rows.nlargest(1, "loops")
-    found = {name: of_rows(number(largest[name].max()), "stability/windows", largest) for name in ("loops", "lower", "upper")}
+    found = each("stability/windows", largest, **{name: number(largest[name].max()) for name in ("loops", "lower", "upper")})
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
     for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
         mine = automatic[automatic.scheme == scheme]
@@ -283,18 +278,17 @@ def _window(known):
 def _latency(known):
     tables = known.tables("realtime")
     null = tables["machine"][tables["machine"].status == "done"]
-    found = {"lost": of_rows(number(null.lost.sum(), 5), "realtime/machine", null), "gap": of_rows(
-        number(null.largest_us.max()), "realtime/machine", null), "watched": of_rows(number(null.seconds.sum()), "realtime/machine", null)}
-    return found | {"said": of_rows(" ".join(one for one in known.said("realtime") if one.startswith("Steps of")), "realtime/largest", tables["largest"])}
+    said = " ".join(one for one in known.said("realtime") if one.startswith("Steps of"))
+    return each("realtime/machine", null, lost=number(null.lost.sum(), 5), gap=number(null.largest_us.max()), watched=number(null.seconds.sum())) | {
+        "said": of_rows(said, "realtime/largest", tables["largest"])}
 
 
 def _own(known):
     ahead = fastest_own(known.tables("families")["scenes"], known.registry)
     equal, batches = known.tables("engines")["equal_error"], known.tables("limit")["batches"]
     equal, batches = equal[(equal.side == "library") & equal.ratio.notna()], batches[batches.status == "ok"]
-    texts = {"mechanisms": len(ahead), "least": number(1 / ahead.to_rival.max()), "most": number(1 / ahead.to_rival.min()),
-             "middle": number(1 / ahead.to_rival.median()), "names": shares(ahead.implementation.value_counts())}
-    found = {name: of_rows(text, "families/scenes", ahead) for name, text in texts.items()}
+    found = each("families/scenes", ahead, mechanisms=len(ahead), least=number(1 / ahead.to_rival.max()), most=number(1 / ahead.to_rival.min()),
+                 middle=number(1 / ahead.to_rival.median()), names=shares(ahead.implementation.value_counts()))
     for name, chosen in (("few", batches.sets.min()), ("many", batches.sets.max())):
         mine = batches[batches.sets == chosen]
         found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine),
@@ -311,9 +305,5 @@ def _limits(known):
 
 def _minutes(known):
     """Budgets, which a run does not exceed by much; set-up and build come to it."""
-    found = {}
-    for name in ("quick", "full"):
-        path = ROOT / "study" / "profiles" / f"{name}.yaml"
-        parts = yaml.safe_load(path.read_text(encoding="utf-8"))["parts"]
-        found[name] = Number(f"{math.ceil(sum(part['seconds'] for part in parts.values()) / 60):d}", f"study/profiles/{name}.yaml")
-    return found
+    seconds = {name: sum(part["seconds"] for part in profiles.load(name, []).parts.values()) for name in ("quick", "full")}
+    return {name: Number(str(math.ceil(one / 60)), f"study/profiles/{name}.yaml") for name, one in seconds.items()}

@@ -191,16 +191,13 @@ def defaults(known):
 
 def largest(known):
     """Who keeps up with which size: a row an implementation, a column a form and deadline; those that keep up with most."""
-    found, heads, most = {}, {}, {}
-    for row in known.tables("realtime")["largest"].sort_values(["scheme", "step"]).itertuples():
-        if row.largest == row.largest:
-            head = f"{row.scheme}, {1e3 * row.step:g} ms"
-            heads[head] = "l"
-            most[row.implementation] = max(most.get(row.implementation, 0), row.largest)
-            found.setdefault(row.implementation, {})[head] = f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (
-                f"; not {number(row.next, 5)}" if row.next == row.next else "")
-    order = sorted(found, key=most.get, reverse=True)[:RANKED]
-    return table([{"implementation": name} | {head: found[name].get(head, "–") for head in heads} for name in order], {"implementation": "l"} | heads)
+    rows = known.tables("realtime")["largest"].dropna(subset=["largest"]).sort_values(["scheme", "step"])
+    most = rows.groupby("implementation", sort=False).largest.max().nlargest(RANKED)
+    rows = rows.assign(head=[f"{row.scheme}, {1e3 * row.step:g} ms" for row in rows.itertuples()], said=[
+        f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (f"; not {number(row.next, 5)}" if row.next == row.next else "")
+        for row in rows.itertuples()])
+    found = rows.pivot(index="implementation", columns="head", values="said").reindex(most.index)[rows["head"].unique()].fillna("–").reset_index()
+    return table(found.to_dict("records"), dict.fromkeys(found, "l"))
 
 
 def engines(known):
