@@ -183,15 +183,14 @@ def shares(counts):
 
 
 def _size(known):
-    results, cells = known.results, known.tables("map")["cells"]
-    own_fill = cells[(cells.layer == "libraries") & cells.fill_asked.isna()]
-    groups = summary.by_size(results, results.layer("libraries"))
-    return each("map/cells", own_fill, outcome=" ".join(map_sentences.by_outcome(groups)), least=number(own_fill.variables.min(), 5),
-                most=number(own_fill.variables.max(), 5))
+    rows = known.tables("map")["cells"].loc[lambda rows: (rows.layer == "libraries") & rows.fill_asked.isna()]
+    groups = summary.by_size(known.results, known.results.layer("libraries"))
+    return each("map/cells", rows, outcome=" ".join(map_sentences.by_outcome(groups)), least=number(rows.variables.min(), 5),
+                most=number(rows.variables.max(), 5))
 
 
 def _fill(known):
-    results, cells = known.results, known.tables("map")["cells"]
+    cells = known.tables("map")["cells"]
     rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
     filled = rows[rows.fill_asked.notna()]
     hybrid = filled[filled.equivalent.str.contains(HYBRID.split("/")[0])]
@@ -204,16 +203,15 @@ def _fill(known):
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
         mine = timed[timed.implementation == variant]
         found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
-    both = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
+    both = {scene: one.value for scene in filled.scene for one in [known.results.ratio(scene, DENSE, HYBRID)] if one}
     return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed),
-                    "faster": of_rows(lambda _: span([one.value for one in both.values()]), "map/tidy", filled[filled.scene.isin(both)])}
+                    "faster": of_rows(lambda _: span(both.values()), "map/tidy", filled[filled.scene.isin(both)])}
 
 
 def profiled(known):
     """Rows of steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same
     factorization were."""
-    rows = known.tables("limit")["steps"]
-    rows = rows[(rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
+    rows = known.tables("limit")["steps"].loc[lambda rows: (rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
     sizes = [size for size, mine in rows.groupby("variables") if {DENSE, HYBRID} <= set(mine.implementation)]
     return rows[rows.variables == max(sizes)] if sizes else rows[:0]
 
@@ -235,8 +233,7 @@ def _claims(known):
 def _price(known):
     whole = [row for row in summary.prices(known.results, known.results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
     first = whole[0] if whole else defaultdict(str)
-    rows = known.tables("map")["cells"]
-    rows = rows[(rows.layer == "libraries") & (rows.winner != "")]
+    rows = known.tables("map")["cells"].loc[lambda rows: (rows.layer == "libraries") & (rows.winner != "")]
     return each("map/tidy", rows, single=first["implementation"], mean=number(first["mean"]), worst=number(first["worst"]), cells=first["of"])
 
 
@@ -256,10 +253,9 @@ def _default(rows):
 
 
 def _error(known):
-    won = accuracy.met(accuracy.own_fill(known.tables("accuracy")["winners"]))
-    mine, pairs = won[won.layer == "libraries"], known.tables("accuracy")["pairs"]
+    won, pairs = accuracy.met(accuracy.own_fill(known.tables("accuracy")["winners"])), known.tables("accuracy")["pairs"]
     precision = accuracy.of_precision(pairs)
-    return {"libraries": of_rows(lambda rows: accuracy.of_layer(rows, "libraries"), "accuracy/winners", mine),
+    return {"libraries": of_rows(lambda rows: accuracy.of_layer(rows, "libraries"), "accuracy/winners", won[won.layer == "libraries"]),
             "precision": of_rows(precision[0], "accuracy/pairs", pairs[pairs.kind == "precision"]) if precision else None}
 
 
@@ -276,17 +272,16 @@ def _window(known):
 
 
 def _latency(known):
-    tables = known.tables("realtime")
-    null = tables["machine"][tables["machine"].status == "done"]
+    null = known.tables("realtime")["machine"].loc[lambda rows: rows.status == "done"]
     said = " ".join(one for one in known.said("realtime") if one.startswith("Steps of"))
     return each("realtime/machine", null, lost=number(null.lost.sum(), 5), gap=number(null.largest_us.max()), watched=number(null.seconds.sum())) | {
-        "said": of_rows(said, "realtime/largest", tables["largest"])}
+        "said": of_rows(said, "realtime/largest", known.tables("realtime")["largest"])}
 
 
 def _own(known):
     ahead = fastest_own(known.tables("families")["scenes"], known.registry)
-    equal, batches = known.tables("engines")["equal_error"], known.tables("limit")["batches"]
-    equal, batches = equal[(equal.side == "library") & equal.ratio.notna()], batches[batches.status == "ok"]
+    equal = known.tables("engines")["equal_error"].loc[lambda rows: (rows.side == "library") & rows.ratio.notna()]
+    batches = known.tables("limit")["batches"].loc[lambda rows: rows.status == "ok"]
     found = each("families/scenes", ahead, mechanisms=len(ahead), least=number(1 / ahead.to_rival.max()), most=number(1 / ahead.to_rival.min()),
                  middle=number(1 / ahead.to_rival.median()), names=shares(ahead.implementation.value_counts()))
     for name, chosen in (("few", batches.sets.min()), ("many", batches.sets.max())):
@@ -298,9 +293,8 @@ def _own(known):
 
 
 def _limits(known):
-    battery = known.tables("extremes")["battery"]
     said = " ".join(known.said("extremes")[:1]).partition(" Other false alarms:")[0]  # which the part's page names, run by run
-    return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", battery)}
+    return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", known.tables("extremes")["battery"])}
 
 
 def _minutes(known):
