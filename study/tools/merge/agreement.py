@@ -76,10 +76,8 @@ def _map(studyset):
     tables = {name: schema.read_table(studyset.folder, "map", name) for name in ("tidy", "verification")}
     results = Results(tables, View(studyset.folder, "map"))
     for layer in LAYERS:
-        names = results.layer(layer)
         for scene, rows in results.timing.groupby("scene"):
-            ranking = results.rank(scene, names)
-            if ranking:
+            if ranking := results.rank(scene, results.layer(layer)):
                 yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking
 
 
@@ -98,8 +96,7 @@ def _families(studyset):
 
 @dataclass(frozen=True)
 class Agreement:
-    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be more than
-    5 % behind the fastest there."""
+    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
     question: Question
     machines: tuple
 
@@ -124,11 +121,6 @@ class Agreement:
         return all(mine.winner in its.equivalent for mine in self.machines for its in self.machines)
 
     @property
-    def decided(self):
-        """Whether the machines leave one alone."""
-        return len(self.common) == 1
-
-    @property
     def worst(self):
         """{contender timed on all machines: its largest ratio to the fastest there}, the least first."""
         shared = set.intersection(*(set(one.ratios) for one in self.machines))
@@ -142,15 +134,15 @@ class Agreement:
 
     @property
     def verdict(self):
-        return "decided" if self.decided else "several" if self.common else "differs"
+        """"decided" where the machines leave one alone."""
+        return {0: "differs", 1: "decided"}.get(len(self.common), "several")
 
 
 def agreements(sets, asked=questions):
     """Agreements on the questions that all sets answer; and how many only some of them have."""
     found = [asked(one) for one in sets]
     shared = [one for one in found[0] if all(one in other for other in found)]
-    everything = {one for other in found for one in other}
-    return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(everything) - len(shared)
+    return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(set().union(*found)) - len(shared)
 
 
 def components(agreed, machines):
@@ -175,16 +167,12 @@ def mechanisms(sets, agreed=None):
     where not all have that. `agreed`: all, if they are known."""
     if agreed is None:
         agreed, _ = agreements(sets, lambda one: dict(_families(one)))
-    found = {}
-    for one in sorted(agreed, key=lambda one: one.question.form):
-        if one.question.part == "families" and "fill=" not in one.question.scene:
-            found.setdefault(one.question.scene, one)
-    return list(found.values())
+    return list({one.question.scene: one for one in sorted(agreed, key=lambda one: one.question.form, reverse=True)  # the penalty form is the last
+                 if one.question.part == "families" and "fill=" not in one.question.scene}.values())
 
 
 def shares(agreed):
-    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all
-    of them, none."""
+    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all, none."""
     same = sum(len(set(one.winners)) == 1 for one in agreed)
     differ = sum(one.verdict == "differs" for one in agreed)
     return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ, "differ": differ}
@@ -194,7 +182,7 @@ def held(agreed, fresh):
     """{layer: (decided cells that a further set answers, of these with its winner in their set)}."""
     known, found = questions(fresh), {}
     for one in agreed:
-        if one.decided and one.question in known:
+        if one.verdict == "decided" and one.question in known:
             cells, inner = found.get(one.question.layer, (0, 0))
             found[one.question.layer] = (cells + 1, inner + (known[one.question].winner in one.common))
     return found

@@ -39,8 +39,7 @@ def gains(sets):
     the families that all timed, in the penalty form."""
     times = []
     for one in sets:
-        rows = table(one.folder, "families", "scenes")
-        rows = rows[(rows.status == "ok") & (rows.scheme == "penalty")]
+        rows = table(one.folder, "families", "scenes").loc[lambda rows: (rows.status == "ok") & (rows.scheme == "penalty")]
         times.append(rows.set_index(["implementation", "scene"]).step_us)
     shared = set.intersection(*(set(one.index) for one in times))
     scenes = {name: sorted(scene for who, scene in shared if who == name) for name, _ in shared}
