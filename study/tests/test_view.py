@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.tools.viewer import picture, program, sheet, trajectory
+from study.tools.viewer import page, program, sheet, trajectory
 from study.tools.viewer.scene import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
@@ -217,7 +217,7 @@ def test_traces_are_of_points_that_move_differently(tmp_path):
     scene = scene_of("crank")
     path = csv_of(tmp_path, "crank", times=[0.05 * k for k in range(60)])
     motion = trajectory.read(path, scene, 99)
-    names = [scene.points[index][0] for index in picture.traces(scene, motion)]
+    names = [scene.points[index][0] for index in page.traces(scene, motion)]
     assert names[0] == "E" and len(names) == 2 and names[1] in "PD"
 
 
@@ -225,9 +225,9 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
     scene = scene_of("top")
     motion = trajectory.read(csv_of(tmp_path, "top"), scene, 100)
     index = {name: place for place, (name, _) in enumerate(scene.points)}
-    assert picture.arrows(scene, motion)[0]["at"] == [index[name] for name in "OTUV"]
+    assert page.arrows(scene, motion)[0]["at"] == [index[name] for name in "OTUV"]
     scene.bodies.append(type(scene.bodies[0])("L", [index["W"], index["T"]], [index["a"]]))
-    assert picture.arrows(scene, motion)[0]["at"] == [index["T"]]
+    assert page.arrows(scene, motion)[0]["at"] == [index["T"]]
 
 
 def test_a_window_is_cut_out_of_the_motion(tmp_path):
@@ -272,7 +272,7 @@ def test_faces_are_those_of_a_solid_and_look_outward(tmp_path):
     motion.positions = numpy.concatenate([motion.positions, numpy.tile(corners, (len(motion.times), 1, 1))], axis=1)
     scene.bodies = [type(scene.bodies[0])(name, [count + k for k in corners_of], [])
                     for name, corners_of in (("box", range(8)), ("plate", (0, 1, 2, 3)), ("bar", (0, 7)))]
-    box, plate, bar = picture.faces(scene, motion)
+    box, plate, bar = page.faces(scene, motion)
     assert len(box) == 12 and plate == bar == []
     at = motion.positions[0]
     volume = sum(numpy.dot(at[a], numpy.cross(at[b], at[c])) for a, b, c in box) / 6
@@ -293,7 +293,7 @@ def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):
     assert kinds["K.x"] == "hidden" and kinds["V"] == kinds["K.w"] == "free"
     motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 100)
     hidden = [name for name, _ in scene.points].index("K.x")
-    assert hidden not in {*picture.places(scene), *picture.traces(scene, motion)}
+    assert hidden not in {*page.places(scene), *page.traces(scene, motion)}
 
 
 def test_distances_are_drawn_where_no_rod_is():
