@@ -230,8 +230,7 @@ def _rows(contest, known, verdicts, records):
 
 
 def _standing(rows, verdict, wrong):
-    """(status, reason) of a newcomer: what the gate says, then what its processes say; what was dropped counts where no other was
-    timed. `wrong`: what makes its times none."""
+    """(status, reason) of a newcomer: the gate's, then its processes'; what was dropped counts where no other was timed. `wrong`: with its times."""
     if verdict[0] != "ok" or wrong:
         return verdict if verdict[0] != "ok" else ("disagrees", wrong)
     lost = rows[(rows.status != "ok") & ((rows.status != "dropped") | ~(rows.status == "ok").any())]

@@ -12,8 +12,7 @@ from study.core.studyset import StudySet, begun, need_own, need_question
 
 
 def open_shelf(folder, tool, context, only, **question):
-    """The StudySet in `folder`, new or continued; StudyError if it holds results of something else. `question`:
-    what must be equal for the records to be of use."""
+    """The StudySet in `folder`, new or continued; StudyError if it holds results of something else, such as of another `question`."""
     need_own(folder)
     found = StudySet(folder)
     if (folder / "set.json").exists():

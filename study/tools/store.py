@@ -55,8 +55,7 @@ def short(processor):
 
 
 def faults(kept):
-    """What is wrong with a set, a line each: a tree with changes, several commits or machines, a part that is missing, tables that were
-    changed or are not those of its records."""
+    """What is wrong with a set, a line each: a changed tree, several commits or machines, a missing part, tables that its records do not make."""
     usual = kept.facts["context"]
     with contextlib.suppress(StudyError):  # of a changed table, which is said below
         if why := machine.no_evidence(kept):

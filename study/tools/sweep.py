@@ -101,15 +101,13 @@ def lines(axes, table, columns):
         chosen = chosen.iloc[numpy.unique(numpy.linspace(0, len(chosen) - 1, min(LINES, len(chosen))).astype(int))]
         ways = numpy.stack([numpy.broadcast_to(places, chosen.shape), chosen.to_numpy()], axis=2)
         look = {"array": chosen[columns[-1]].to_numpy(), "cmap": plt.get_cmap("viridis")} if finished else {"color": FAILED}
-        axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look,
-                                           zorder=1 if finished else 2))
+        axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look, zorder=1 if finished else 2))
     axes.set(xlim=(-0.3, len(columns) - 0.7), ylim=(-0.2, 1.12), xticks=places, yticks=[])
     axes.set_xticklabels(columns, rotation=20, ha="right")
     for place, name in zip(places, columns):
         axes.axvline(place, color="#444444", linewidth=0.8, zorder=3)
         for y, value in ((1.03, high[name]), (-0.06, low[name])):
-            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8, zorder=4,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
+            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8, zorder=4, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     axes.spines[:].set_visible(False)
     shown = min(LINES, int(table["finished"].sum()))
     title = "Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished"
@@ -131,8 +129,7 @@ def surface(axes, table, over, result):
 
 
 def edges(values):
-    """Of the cells of a parameter: one a value where these are few, else of one width, so many that cells of two parameters have some
-    values each."""
+    """Of a parameter's cells: one a value where these are few, else of one width, so many that cells of two parameters have some values each."""
     distinct = numpy.unique(values)
     if 1 < len(distinct) <= CELLS:
         inner = (distinct[:-1] + distinct[1:]) / 2

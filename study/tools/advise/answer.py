@@ -80,8 +80,7 @@ def _runner_up(answer):
 
 
 def _refused(advice):
-    """Why what would have been faster than the advice is not advised: [{"setting", "step", "why"}], whole runs that failed,
-    and the slowest pilot of each such setting, the fastest first."""
+    """Why what would be faster is not advised: whole runs that failed, and the slowest pilot of each such setting, the fastest first."""
     best = advice.chosen.us_per_second()[0]
     found = [(0.0, row["setting"], row["step"], row["refused"]) for row in advice.verifications[:-1]]
     for one in advice.found.values():

@@ -50,8 +50,7 @@ def named(described, variants, settings):
 
 
 def probe(variants, described, run, step, duration):
-    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the form that the rule is of;
-    where the step is too long for it, times are those foreseen."""
+    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the rule's form; foreseen if the step is too long."""
     rows, speeds, foreseen = [], {}, _foreseen(described, variants)
     form = Setting(described["scheme"]["take"])
     for name in variants:

@@ -40,8 +40,7 @@ class Found:
 
 
 class Search:
-    """`run(setting, step)` gives a Pilot, or None if no time is left for it; `quick(setting, step)` the time of a step
-    in a short run, us, or None."""
+    """`run(setting, step)` gives a Pilot, `quick(setting, step)` the time of a step in a short run, us; None if no time is left."""
 
     def __init__(self, settings, run, quick, *, error, duration, start, deadline_us=None, step=None):
         self.found = {setting: Found(setting) for setting in settings}

@@ -11,8 +11,7 @@ OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(schem
 
 
 def catalogue():
-    """Scheme × projections × tolerance, a scheme's own before what changes it; of what else changes a step, what was the
-    fastest somewhere when all was tried (README.md)."""
+    """Scheme × projections × tolerance, a scheme's own first; of what else changes a step, what was the fastest somewhere (README.md)."""
     found = []
     for scheme in SCHEMES:
         for projections, tolerance in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED)):

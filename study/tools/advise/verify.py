@@ -15,8 +15,7 @@ HALVES = 6  # of the duration, to find for how long an error can be kept
 
 
 def verify(advice, run):
-    """Whole runs of the fastest candidate, until one is as accurate as asked: `advice.chosen`, its row `advice.verified`, and that of the line
-    as it is advised, without a check. `run` is a Runner."""
+    """Whole runs of the fastest candidate, until one is as accurate as asked; then `advice.outcome`, the line as advised, without a check."""
     question = advice.question
     for _ in range(VERIFICATIONS):
         one = next(iter(timing.ranked(advice.candidates, question.deadline_us)), None)
@@ -50,10 +49,9 @@ def verify(advice, run):
 
 def _affordable(one, question, seconds):
     """The simulated time that a verification can cover, s; 0 if that is not worth it."""
-    expected = 4e-6 * one.us_per_second()[0] * question.duration  # 3 for the check, 1 for the line itself
-    if expected <= seconds:
+    share = seconds / (4e-6 * one.us_per_second()[0] * question.duration)  # 3 for the check, 1 for the line itself
+    if share >= 1:
         return question.duration
-    share = seconds / expected
     return float(f"{share * question.duration:.2g}") if share > 0.05 and share * question.duration > 20 * one.step else 0.0
 
 

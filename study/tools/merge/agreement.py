@@ -163,8 +163,7 @@ def components(agreed, machines):
 
 
 def mechanisms(sets, agreed=None):
-    """Agreements on libraries on mechanisms at their own fill, one a mechanism: in the penalty form, or in the saddle-point form
-    where not all have that. `agreed`: all, if they are known."""
+    """Agreements on libraries, one a mechanism at its own fill: in the penalty form, or in the other if not all have that. `agreed`: all."""
     if agreed is None:
         agreed, _ = agreements(sets, lambda one: dict(_families(one)))
     return list({one.question.scene: one for one in sorted(agreed, key=lambda one: one.question.form, reverse=True)  # the penalty form is the last

@@ -35,8 +35,7 @@ def no_evidence(studyset):
 
 
 def gains(sets):
-    """{contender: [for each machine the mean over scenes of a step's time ÷ that on the first machine]}: geometric, over the scenes of
-    the families that all timed, in the penalty form."""
+    """{contender: [of each machine the geometric mean of a step's time ÷ that on the first]}, over the families' scenes, in the penalty form."""
     times = []
     for one in sets:
         rows = table(one.folder, "families", "scenes").loc[lambda rows: (rows.status == "ok") & (rows.scheme == "penalty")]

@@ -209,8 +209,7 @@ def _fill(known):
 
 
 def profiled(known):
-    """Rows of steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same
-    factorization were."""
+    """Steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same factorization were."""
     rows = known.tables("limit")["steps"].loc[lambda rows: (rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
     sizes = [size for size, mine in rows.groupby("variables") if {DENSE, HYBRID} <= set(mine.implementation)]
     return rows[rows.variables == max(sizes)] if sizes else rows[:0]

@@ -78,8 +78,9 @@ def decided(known):
     """What the mechanisms were held to, and what was found."""
     rows = [(what, asked, shorten(found, MOST_FOUND, placeholder=" …"), {True: "yes", False: "no", None: "–"}[holds])
             for what, asked, found, holds in bounds.bounds(known.tables("families"))]
-    rows += [(row.what, f"{row.sign} {number(row.bound)}", between(row.worst, row.low, row.high),
-              {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)) for row in known.tables("limit")["held"].dropna(subset=["worst"]).itertuples()]
+    held, holds = known.tables("limit")["held"].dropna(subset=["worst"]), {"held": "yes", "not held": "no"}
+    rows += [(row.what, f"{row.sign} {number(row.bound)}", between(row.worst, row.low, row.high), holds.get(row.verdict, row.verdict))
+             for row in held.itertuples()]
     return table(rows, {"what": r"P{64mm}", "asked": r"P{36mm}", "found": r"P{52mm}", "holds": r"P{14mm}"})
 
 
@@ -97,8 +98,7 @@ def ranking(known):
 
 
 def claims(known):
-    """The claims of 2008, each with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those
-    without a verdict, and why."""
+    """The claims of 2008, with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those without."""
     beside = {one.folder.name + ("" if known.together else f" ({one.context['commit'][:10]})"): one.tables("map")["claims"].set_index(["id", "claim"])
               for one in known.sets[1:]}
     rows, without = [], {}
@@ -129,7 +129,8 @@ def machines(known):
     sets = known.compared or [known]
     found, gained = [_machine(one) for one in sets], machine.gains(sets)
     rows = [(what, *(mine[what] for mine in found)) for what in found[0]]
-    rows += [(f"a step with {name}, times that on {sets[0].folder.name}", *map(number, gained[name])) for name in GAINED if name in gained and known.compared]
+    rows += [(f"a step with {name}, times that on {sets[0].folder.name}", *map(number, gained[name]))
+             for name in GAINED if name in gained and known.compared]
     return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(sets)) for one in sets})
 
 
@@ -211,8 +212,8 @@ def mechanisms(known):
     for row in best_form(tables_["winners"], "libraries").sort_values("variables").itertuples():
         others = [name for name in row.equivalent.split() if name != row.winner]
         mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
-        rows.append((row.scene, row.scheme.partition("-")[0], number(row.variables, 5), number(about.per_column.get(row.scene, math.nan), 2), row.winner,
-                     number(row.step_us), between(row.margin, row.low, row.high), ", ".join(others) or ("" if row.decided else "open"),
+        rows.append((row.scene, row.scheme.partition("-")[0], number(row.variables, 5), number(about.per_column.get(row.scene, math.nan), 2),
+                     row.winner, number(row.step_us), between(row.margin, row.low, row.high), ", ".join(others) or ("" if row.decided else "open"),
                      "" if mine is None else number(1 / mine.to_rival) + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
                                                                           if bounded(mine.to_rival_low, mine.to_rival_high) else "")))
     return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{24mm}", "step, µs": "r",

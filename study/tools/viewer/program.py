@@ -30,8 +30,7 @@ def describe(scene):
 
 def simulate(place, scene, options, frames, csv, outputs, say):
     """Writes the trajectory `csv` of `scene`, which is at `place`, in about `frames` rows, and its outputs at the same times to `outputs`
-    unless that is None; returns a line on what was run. `options` has step, duration (None: chosen here, up to the end of what drives the
-    scene) and implementation. `say` takes what to tell the user. Raises StudyError."""
+    unless that is None; returns a line on what was run. A step or duration that is not given is chosen. `say` tells the user."""
     how = ["--implementation", options.implementation, "--scheme", scene.scheme]
     for step in (options.step,) if options.step else STEPS:
         duration = options.duration or _affordable(place, how, step, min(10.0, STEPS_AT_MOST * step, scene.end), say)
@@ -49,8 +48,7 @@ def simulate(place, scene, options, frames, csv, outputs, say):
 
 
 def _every(steps, frames):
-    """Write every so many steps: the fewest that make no more than `frames` rows, better a divisor of `steps`, so that the last step is
-    written too. More steps than `mbs` takes are for it to refuse."""
+    """Write every so many steps: the fewest that make at most `frames` rows, better a divisor of `steps`, so that the last is written too."""
     steps = max(1, round(min(steps, STEPS_OF_A_RUN)))
     most = min(frames, steps)
     return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0), math.ceil(steps / frames))

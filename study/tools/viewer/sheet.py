@@ -19,8 +19,7 @@ PICTURE = re.compile(r'id="sheet" src="data:image/png;base64,([^"]+)"')  # what 
 
 
 def draw(scene, motion, up, window=None):
-    """The PNG file as bytes. `up` is the unit vector that points up in space; `window` the first and last time, s, or None
-    for all of the motion. Raises StudyError."""
+    """The PNG file as bytes. `up`: the unit vector that points up in space; `window`: first and last time, s, or None for all of the motion."""
     text = page.render(scene, within(motion, window) if window else motion, "", up, sheet=True)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sheet.html"

@@ -24,8 +24,7 @@ class Motion:
 
 
 def read(path, scene, frames):
-    """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a frame is the largest of all rows since
-    the frame before. Raises StudyError."""
+    """About `frames` rows, equally spaced, and the last. A frame's constraint violation is the largest of all rows since the frame before."""
     with _opened(path) as file:
         columns = _header(path, file)
         places, curves = _places(path, columns, scene)
@@ -39,8 +38,7 @@ def read(path, scene, frames):
 
 
 def read_outputs(path, scene, frames):
-    """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory of: their rows are at the same
-    times. Raises StudyError."""
+    """Motion.outputs from the CSV of `mbs simulate --output`, of the run whose trajectory was read: their rows are at the same times."""
     with _opened(path) as file:
         columns = _header(path, file)
         table, _ = _table(path, file, columns, frames)
