@@ -62,8 +62,7 @@ def _make(table, folder, cluster, parts):
         if not mark.exists():
             raise StudyError(f"part {number} of {len(parts)} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
                              "the same command goes on where it was")
-    merged = subprocess.run([str(ROOT / program_of()), "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True,
-                            text=True)
+    merged = subprocess.run([str(ROOT / program_of()), "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
     if merged.returncode >= USAGE or merged.returncode < 0:
         raise StudyError(_last(merged.stderr, "mbs merge-sweep does not work"))
 

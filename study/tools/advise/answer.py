@@ -16,16 +16,15 @@ BUSY = 0.05       # share of the time of runs in which other programs had the pr
 
 def as_json(advice, run, folder):
     met = advice.verified is not None
-    answer = {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met,
-              "advice": _advised(advice) if met else None, "runner_up": None, "refused": _refused(advice) if met else [],
-              "why_not": None if met else _why_not(advice), "helps": advice.helps,
-              "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short + _busy(advice.waited),
-              "seconds": round(advice.seconds, 2), "waited": round(advice.waited, 3),
-              "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out,
-              "candidates": [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-                              "advised": met and one is advice.chosen, "reason": one.reason} | _times(one) for one in advice.candidates],
-              "runs": run.rows, "results": str(folder)}
-    return answer | {"runner_up": _runner_up(answer) if met else None}
+    candidates = [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step, "advised": met and one is advice.chosen,
+                   "reason": one.reason} | _times(one) for one in advice.candidates]
+    told = _advised(advice) if met else None
+    return {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met, "advice": told,
+            "runner_up": _runner_up(candidates, told) if met else None, "refused": _refused(advice) if met else [],
+            "why_not": None if met else _why_not(advice), "helps": advice.helps, "pilot_duration": advice.pilot_duration,
+            "cut_short": advice.cut_short + _busy(advice.waited), "seconds": round(advice.seconds, 2), "waited": round(advice.waited, 3),
+            "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out, "candidates": candidates,
+            "runs": run.rows, "results": str(folder)}
 
 
 def _busy(waited):
@@ -55,24 +54,22 @@ def _advised(advice):
 
 
 def _setting(setting, advice):
-    told = {"setting": setting.name, "step": None, "pilots": []}
     found = advice.found.get(setting)
     if not found:
-        return told | {"reason": fits(setting, advice.described) or (
+        return {"setting": setting.name, "step": None, "pilots": [], "reason": fits(setting, advice.described) or (
             "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it")}
-    orders = halvings(found.pilots)
-    return told | {"step": found.chosen, "reason": found.reason, "pilots": [
-        asdict(pilot) | {"order": orders.get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
-        for pilot in found.pilots]}
+    pilots = [asdict(pilot) | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
+              for pilot in found.pilots]
+    return {"setting": setting.name, "step": found.chosen, "pilots": pilots, "reason": found.reason}
 
 
-def _runner_up(answer):
+def _runner_up(candidates, told):
     """The second fastest candidate and why it lost; None if no other was timed."""
-    timed = [one for one in answer["candidates"] if one["rounds"] and not one["advised"]]
-    if not timed:
+    timed = (one for one in candidates if one["rounds"] and not one["advised"])
+    second = min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]), default=None)
+    if not second:
         return None
-    second = min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]))
-    times, best = second["us_per_second"], answer["advice"]["us_per_second"]
+    times, best = second["us_per_second"], told["us_per_second"]
     ratio = times["median"] / best["median"]
     why = second["reason"] or (
         f"{ratio:.2f} times the time of a simulated second" + ", which the rounds do not tell apart" * (times["low"] <= best["high"]))
@@ -98,16 +95,14 @@ def _why_not(advice):
     found, question = advice.found.values(), advice.question
     if not advice.speeds:
         return "no implementation simulates this scene: " + "; ".join(dict.fromkeys(f"{row['status']}, {row['reason']}" for row in advice.probe))
-    late = min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None)
-    if late:
+    if late := min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None):
         return (f"99 % of the steps are not done within the deadline: {late.reason} with {late.implementation}, "
                 f"{late.setting.name}, step {late.step:g} s")
     if advice.verifications:
         return "no candidate kept it over the whole time"
     if any(one.chosen for one in found):
         return "no candidate could be timed"
-    slow = [one.reason for one in found if one.chosen_us > (question.deadline_us or math.inf)]
-    if slow:
+    if slow := [one.reason for one in found if one.chosen_us > (question.deadline_us or math.inf)]:
         return f"what is accurate enough is too slow: {slow[0]}"
     pilots = [pilot for one in found for pilot in one.pilots]
     if pilots and not any(pilot.status in FINISHED for pilot in pilots):
@@ -118,13 +113,11 @@ def _why_not(advice):
 
 
 def text(answer):
-    asked = answer["question"]
+    asked, runs = answer["question"], answer["runs"]
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
              + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
-             + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
-    lines += _advice_lines(answer) if answer["met"] else [
-        "", f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
-    runs = answer["runs"]
+             + (f", in steps of {asked['step']:g} s" if asked["step"] else ""), ""]
+    lines += _advice_lines(answer) if answer["met"] else [f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
     tried = (f"{sum(bool(one['pilots']) for one in answer['settings'])} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
              f"{len({run['implementation'] for run in runs})} implementations, "
              f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
@@ -161,7 +154,7 @@ def _advice_lines(answer):
     if second:
         rows["runner-up"] = [f"{second['implementation']}, {second['setting']}, step {second['step']:g} s", second["why"]]
     rows["faster, but refused"] = [f"{one['setting']}, step {one['step']:g} s: {one['why']}" for one in answer["refused"][:MOST_REFUSED]]
-    return ["", "Run this (--half-step checks its error):", "", f"  {told['command']}", "",
+    return ["Run this (--half-step checks its error):", "", f"  {told['command']}", "",
             *(line for name, values in rows.items() for line in _rows(name, values))]
 
 
@@ -169,6 +162,5 @@ def _ends_as(told):
     """How the advised line ends, and why that is no objection."""
     if told["status"] in GOOD:
         return [told["status"]]
-    return [f"{told['status']}: {told['status_reason']}",
-            "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
-            f"{number(told['error']['high'])} m at most"]
+    return [f"{told['status']}: {told['status_reason']}", "by the program's own bounds, which know nothing of the error that you asked for; half "
+            f"the step shows {number(told['error']['high'])} m at most"]

@@ -104,8 +104,8 @@ def _design(known):
     scenes, tried = known.tables("families")["scenes"], known.tables("tuning")["alternatives"]
     timed, table = tried[tried.status == "ok"], "tuning/alternatives"
     return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
-            "equal": Number(f"{100 * (timing.EQUIVALENT - 1):.0f} %", "analysis/core/timing.py"),
-            "confidence": Number(f"{100 * timing.CONFIDENCE:.0f} %", "analysis/core/timing.py"),
+            "equal": Number(percent(timing.EQUIVALENT - 1), "analysis/core/timing.py"),
+            "confidence": Number(percent(timing.CONFIDENCE), "analysis/core/timing.py"),
             "processes": of_rows(lambda rows: span(rows.processes), "families/scenes", scenes[scenes.processes.notna()]),
             "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
             "slower": count(timed[timed.low > 1], timed, table), "faster": count(timed[timed.high < 1], timed, table),

@@ -62,8 +62,7 @@ def from_description(description, name):
         raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
                          f"points {', '.join(unknown) or 'known'}: its points do not fit")
     used = {point for element in (*rods, *springs, *(body.points for body in bodies)) for point in element}
-    points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind)
-              for place, (name, kind) in enumerate(points)]
+    points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind) for place, (name, kind) in enumerate(points)]
     known = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
     facts = ", ".join(text.format(description[key]) for text, key in known.items() if description.get(key) is not None)
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs, list(elements.get("outputs", [])), facts,
