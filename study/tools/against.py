@@ -11,12 +11,12 @@ import pandas
 from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
-from study.core import child, locks, profile as profiles
-from study.core.cell import Cell, by_environment, control, on_usual_pairs
+from study.core import child, locks
+from study.core.cell import Cell, by_environment
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import context_of, describe, listed, need_own, select, writable
+from study.core.studyset import describe, listed, need_own, select, writable
 from study.tools import shelf
 
 SECONDS = 120.0  # of a process
@@ -77,11 +77,8 @@ def _build(revision, log):
 
 def _measure(folder, options, known, names, revision, build):
     """The table of ratios."""
-    pairs = profiles.load("quick", []).blas
-    contenders = on_usual_pairs(known, pairs, names)
-    kept = shelf.open_shelf(folder, "against", context_of(control(known, pairs)), options.only, scenes=options.scenes,
-                            old=digest(ROOT / program_of(build=build))[:16])
-    lab = shelf.ToolLab(kept, "against", "runs")
+    old = digest(ROOT / program_of(build=build))[:16]
+    lab, contenders = shelf.open_shelf(folder, "against", known, options.only, names, scenes=options.scenes, old=old)
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]

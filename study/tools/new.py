@@ -38,7 +38,11 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        write(folder, options.name, options.library)
+        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@"), (options.name, *LIBRARIES[options.library])))
+        for path in sorted(SKELETON.iterdir()):
+            stem, _, only = path.name.partition("@")
+            if only in ("", options.library):
+                write_text(folder / stem, re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8")))
         before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
         write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:
@@ -60,12 +64,3 @@ bottom, and climb the ladder after each function.""")
 
 def listed():
     return LIST.read_text(encoding="utf-8").split("mbs_registry(")[1].split(")")[0].split()
-
-
-def write(folder, name, library):
-    values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@"), (name, *LIBRARIES[library])))
-    for path in sorted(SKELETON.iterdir()):
-        stem, _, only = path.name.partition("@")
-        if only in ("", library):
-            text = re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8"))
-            write_text(folder / stem, text)

@@ -25,9 +25,7 @@ class Question:
     budget: float  # s
     step: float | None = None  # s, where it is given
 
-    @property
-    def first_step(self):
-        return self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS))
+    first_step = property(lambda self: self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS)))
 
 
 @dataclass
@@ -48,13 +46,10 @@ class Advice:
     helps: list = field(default_factory=list)       # options that would help, each a sentence
     cut_short: list = field(default_factory=list)   # sentences
     hurried: bool = False                           # more time might have changed the answer
-    waited: float = 0.0                             # share of the time of runs in which other programs ran
-    seconds: float = 0.0
 
     def serving(self, setting):
         """Who of those tried serves a setting, fastest first."""
-        able = serving(setting, self.variants)
-        return [name for name in self.speeds if name in able]
+        return serving(setting, {name: self.variants[name] for name in self.speeds})
 
     @property
     def pilot_error(self):
@@ -79,7 +74,6 @@ def advise(question, settings, described, variants, run):
         verify(advice, run)
         if not advice.verified:
             what_helps(advice, run)
-    advice.seconds, advice.waited = run.seconds, run.waited
     return advice
 
 

@@ -22,7 +22,7 @@ def as_json(advice, run, folder):
     return {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met, "advice": told,
             "runner_up": _runner_up(candidates, told) if met else None, "refused": _refused(advice) if met else [],
             "why_not": None if met else _why_not(advice), "helps": advice.helps, "pilot_duration": advice.pilot_duration,
-            "cut_short": advice.cut_short + _busy(advice.waited), "seconds": round(advice.seconds, 2), "waited": round(advice.waited, 3),
+            "cut_short": advice.cut_short + _busy(run.waited), "seconds": round(run.seconds, 2), "waited": round(run.waited, 3),
             "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out, "candidates": candidates,
             "runs": run.rows, "results": str(folder)}
 

@@ -22,9 +22,7 @@ class Pilot:
     step_us: float = math.nan  # median time of a step: one run must do, even on a busy machine
     reason: str = ""
 
-    @property
-    def valid(self):
-        return self.status in FINISHED and self.estimate is not None
+    valid = property(lambda self: self.status in FINISHED and self.estimate is not None)
 
 
 @dataclass(frozen=True)

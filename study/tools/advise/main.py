@@ -8,11 +8,10 @@ from functools import partial
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
-from study.core import locks, profile as profiles
-from study.core.cell import control, on_usual_pairs
+from study.core import locks
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, describe, listed, need_own, select, writable
+from study.core.studyset import describe, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
@@ -20,7 +19,7 @@ from study.tools.advise.evidence import BEGUN
 from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
 from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
-from study.tools.shelf import ToolLab, open_shelf
+from study.tools.shelf import open_shelf
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("--error", "--deadline-us", "--step", "--duration", "--budget", "--json")
@@ -96,10 +95,8 @@ def ask(options, folder=None):
 
 def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False, **clock):
     """The Runner of a scene and its records in `folder`; `clock`: `budget` and `began`."""
-    pairs = profiles.load("quick", []).blas
-    kept = open_shelf(folder, "advise", context_of(control(known, pairs)), names, question=inputs)
-    lab = ToolLab(kept, "advise", "runs", quiet=quiet)
-    return Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us, **clock)
+    lab, contenders = open_shelf(folder, "advise", known, names, names, quiet, question=inputs)
+    return Runner(lab, inputs["scene"], variables, contenders, deadline_us, **clock)
 
 
 def seconds(text):

@@ -107,10 +107,7 @@ class Runner:
         """Share of the time of all runs in which they had no processor: other programs had it."""
         return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
 
-    @property
-    def slowdown(self):
-        """How many times longer runs take for that."""
-        return 1.0 / (1.0 - self.waited)
+    slowdown = property(lambda self: 1.0 / (1.0 - self.waited))  # how many times longer runs take for that
 
     def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}

@@ -23,9 +23,7 @@ class Found:
     quick_us: float = math.nan   # of a step, in a short run before any pilot
     chosen_us: float = math.nan  # of the chosen step
 
-    @property
-    def open(self):
-        return self.chosen is None and not self.reason
+    open = property(lambda self: self.chosen is None and not self.reason)
 
     def step_us(self):
         """Time of a step: of the run at the chosen step, else the median at the shortest one that was tried, else of the short run."""

@@ -25,9 +25,7 @@ class Candidate:
     late_us: float = 0.0   # its 99th percentile, where that is why
     kept: bool = field(default=False, compare=False)  # it is timed in every round, however slow
 
-    @property
-    def out(self):
-        return bool(self.reason)
+    out = property(lambda self: bool(self.reason))
 
     def us_per_second(self):
         """(median, least, most) over the rounds of the time of a simulated second."""

@@ -111,9 +111,7 @@ class Agreement:
         first, *others = self.sets
         return [name for name in first if all(name in one for one in others)]
 
-    @property
-    def winners(self):
-        return [one.winner for one in self.machines]
+    winners = property(lambda self: [one.winner for one in self.machines])
 
     @property
     def alike(self):

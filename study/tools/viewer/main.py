@@ -57,12 +57,6 @@ def _options(arguments):
     own.add_argument("--step", type=positive, metavar="S", help="time step (1.25e-3, or the first tenth, hundredth, … of it that does)")
     own.add_argument("--implementation", help=f"folder/variant ({IMPLEMENTATION})")
     options = parser.parse_args(arguments)
-    _check(options)
-    options.implementation = options.implementation or IMPLEMENTATION
-    return options
-
-
-def _check(options):
     if options.trajectory and (options.duration or options.step or options.implementation):
         raise StudyError("--duration, --step and --implementation are for a simulation, but a TRAJECTORY is given")
     if options.window and not options.window[0] < options.window[1]:
@@ -81,3 +75,5 @@ def _check(options):
         if why := ("it is an input" if path.resolve() in inputs else "it is a directory" if os.path.isdir(path) else
                    "" if os.path.isdir(path.parent) else f"there is no directory {path.parent}"):
             raise StudyError(f"{flag}: cannot write {name}: {why}")
+    options.implementation = options.implementation or IMPLEMENTATION
+    return options

@@ -23,7 +23,8 @@ def render(scene, motion, note, up, sheet=False):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(FOLDER), trim_blocks=True, undefined=jinja2.StrictUndefined, autoescape=True)
     moving = [index for index in range(len(scene.points)) if numpy.ptp(motion.positions[:, index], axis=0).max() > 0]
     return environment.get_template("page.html.j2").render(
-        scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs, style=_text("page.css"), scripts="\n".join(map(_text, SCRIPTS)),
+        scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs,
+        style=_text("page.css"), scripts="\n".join(map(_text, SCRIPTS)),
         data=json.dumps(_data(scene, motion, moving, up) | {"sheet": sheet}, separators=(",", ":"), allow_nan=False)
         .replace("<", "\\u003c"),  # no text in it can end the script element
         packed=base64.b64encode(motion.positions[:, moving].astype("<f4").tobytes()).decode())
