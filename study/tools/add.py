@@ -1,8 +1,5 @@
-# study/add NAME: times a new or changed implementation against those who lead the cells of a set: its mechanisms, in both forms of
-# the step, and its map.
-#
-# The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
-# the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
+# study/add NAME: times a new or changed implementation beside those who lead a set's mechanisms, in both forms of the step, and its map, in
+# fresh processes: what the set has of the others is never paired with new samples. README.md has what it leaves.
 import datetime
 import shutil
 from collections import Counter

@@ -1,7 +1,5 @@
-# study/against REVISION: times this tree and another revision of it, whose program is built beside.
-#
-# Two programs cannot share a process. Fresh processes alternate, old new new old, so that what drifts falls on both
-# alike; inside each all implementations take turns. A ratio is that of two neighbours, its interval one over pairs.
+# study/against REVISION: times this tree and another revision of it, whose program is built beside. Two programs cannot share a process: fresh
+# ones alternate, old new new old, so that what drifts falls on both alike. A ratio is that of two neighbours, its interval one over pairs.
 import json
 import subprocess
 from dataclasses import replace

@@ -1,9 +1,4 @@
-# Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured
-# number.
-#
-#   <!-- from the stored sets: cases -->
-#   …
-#   <!-- end -->
+# Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured number.
 import json
 import re
 

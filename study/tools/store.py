@@ -1,6 +1,5 @@
-# study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers.
-#
-# Pages and figures are left out, since study/figures draws them from these; pictures that a text shows are kept.
+# study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers. Pages and figures are left out,
+# since study/figures draws them from these; pictures that a text shows are kept.
 import contextlib
 import os
 import re

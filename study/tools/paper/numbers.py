@@ -1,6 +1,5 @@
-# Every number of the paper by name, each a query on a table of the set, with the records behind it.
-#
-# A query gets Known and gives Number or None: then the paper prints "not measured", as it does for a text that says nothing.
+# Every number of the paper by name, each a query on a table of the set, with the records behind it. A query gets Known and gives Number or
+# None: then the paper prints "not measured", as it does for a text that says nothing.
 import math
 from collections import defaultdict
 from dataclasses import dataclass
