@@ -88,13 +88,22 @@ def _places(path, columns, scene):
 
 
 def _table(path, file, columns, frames):
-    """(the rows that are shown, of each the largest values since the one before), two arrays."""
+    """(the rows that are shown, of each the largest values since the one before), two arrays; StudyError naming the line of a row that is not
+    whole or does not come after the one before."""
     count = sum(1 for _ in _lines(file))
     if count < 2:
         raise StudyError(f"{path} has {count} row(s): a motion needs two at least")
-    every, shown, largest, since = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf
-    for row, values in enumerate(_rows(path, file, columns)):
-        since = numpy.maximum(since, values)
+    every, shown, largest, since, last = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf, -numpy.inf
+    for row, line in enumerate(_lines(file)):
+        try:
+            values = numpy.array(line.split(b","), dtype=float)
+        except ValueError:
+            values = numpy.empty(0)
+        if len(values) != len(columns) or not numpy.isfinite(values).all():
+            raise StudyError(f"{path}, line {row + 2}: not {len(columns)} finite numbers, as the header has columns: is the file complete?")
+        if values[0] <= last:
+            raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
+        last, since = values[0], numpy.maximum(since, values)
         if row % every == 0 or row == count - 1:
             shown.append(values)
             largest.append(since)
@@ -107,22 +116,6 @@ def _lines(file):
     file.seek(0)
     file.readline(LONGEST)
     return iter(lambda: file.readline(LONGEST), b"")
-
-
-def _rows(path, file, columns):
-    """Values of all rows; StudyError naming the line of one that is not whole or does not come after the one before."""
-    last = -numpy.inf
-    for row, line in enumerate(_lines(file)):
-        try:
-            values = numpy.array(line.split(b","), dtype=float)
-        except ValueError:
-            values = numpy.empty(0)
-        if len(values) != len(columns) or not numpy.isfinite(values).all():
-            raise StudyError(f"{path}, line {row + 2}: not {len(columns)} finite numbers, as the header has columns: is the file complete?")
-        if values[0] <= last:
-            raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
-        last = values[0]
-        yield values
 
 
 def _same_start(path, motion, scene):
