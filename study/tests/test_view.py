@@ -16,7 +16,7 @@ from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
 from study.tools.viewer import page, program, sheet, trajectory
-from study.tools.viewer.scene import from_description, upward
+from study.tools.viewer.program import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
 

@@ -8,7 +8,6 @@ from analysis.core.errors import StudyError
 from analysis.core.files import write
 from study.core.options import Parser, positive
 from study.tools.viewer import page, program, sheet, trajectory
-from study.tools.viewer.scene import upward
 
 FRAMES = 600  # in a page, at most
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
@@ -33,7 +32,7 @@ def view(arguments):
                 motion.outputs = trajectory.read_outputs(outputs, scene, frames)
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
-    up = [int(axis == options.up) for axis in "xyz"] if options.up else upward(options.scene)
+    up = [int(axis == options.up) for axis in "xyz"] if options.up else program.upward(options.scene)
     html = page.render(scene, motion, note, up).encode()
     png = sheet.draw(scene, motion, up, options.window) if options.png else None
     for name, content in ((options.output, html), *([(options.png, png)] if png else [])):

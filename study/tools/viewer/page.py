@@ -8,7 +8,7 @@ import jinja2
 import numpy
 from scipy.spatial import ConvexHull, QhullError
 
-from study.tools.viewer.scene import NO_PLACES
+from study.tools.viewer.program import NO_PLACES
 
 FOLDER = Path(__file__).parent / "page"
 SCRIPTS = ("data.js", "camera.js", "grid.js", "elements.js", "symbols.js", "stage.js", "charts.js", "playback.js", "pointer.js", "controls.js",
