@@ -34,14 +34,13 @@ def keep(results, scene, rows, searched):
         known = read(results, name).to_dict("records") if (results / name).exists() else []
         table = pandas.DataFrame([row for row in known if row["scene"] != scene] + [{"scene": scene} | row for row in found],
                                  columns=SHOWN if name == SEARCHED else None)
-        order = [column for column in ("kind", "n", "scene", "error") if column in table]
-        write(results / name, lambda partial, table=table.sort_values(order, kind="stable"): table.to_csv(
-            partial, index=False, float_format="%.4g", compression="xz" if name == SEARCHED else None))
+        table = table.sort_values([column for column in ("kind", "n", "scene", "error") if column in table], kind="stable")
+        write(results / name, lambda partial, table=table: table.to_csv(partial, index=False, float_format="%.4g"))
     write_text(results / PAGE, page(read(results)))
 
 
 def read(results, name=QUESTIONS):
-    return pandas.read_csv(results / name, dtype={"commit": str}, compression="xz" if name == SEARCHED else None)
+    return pandas.read_csv(results / name, dtype={"commit": str})
 
 
 def held(table):

@@ -30,9 +30,8 @@ def find_speeds(advice, settings, run):
 
 
 def named(described, variants, settings):
-    """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those
-    near the fastest by the rule of `mbs describe`, who is sparse and unknown to it, as it was fitted to general code, and who
-    else is needed for a setting; all without a rule."""
+    """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those near the fastest by the
+    rule of `mbs describe`, who is sparse and unknown to it, and who else is needed for a setting; all without a rule."""
     foreseen = _foreseen(described, variants)
     if not foreseen:
         return dict.fromkeys(variants, math.nan), {}
