@@ -4,6 +4,7 @@ import math
 import os
 import re
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -108,12 +109,12 @@ def upward(path):
 def simulate(place, scene, options, frames, csv, outputs, say):
     """Writes the trajectory `csv` of `scene`, which is at `place`, in about `frames` rows, and its outputs at the same times to `outputs`
     unless that is None; returns a line on what was run. A step or duration that is not given is chosen. `say` tells the user."""
-    how = ["--implementation", options.implementation, "--scheme", scene.scheme]
+    run = partial(_run, "simulate", place, "--implementation", options.implementation, "--scheme", scene.scheme)
     for step in (options.step,) if options.step else STEPS:
-        duration = options.duration or _affordable(place, how, step, min(10.0, STEPS_AT_MOST * step, scene.end), say)
+        duration = options.duration or _affordable(run, step, min(10.0, STEPS_AT_MOST * step, scene.end), say)
         say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}, {scene.scheme} form")
-        written = ["--trajectory", csv, "--every", _every(duration / step, frames), *(["--output", outputs] if outputs else [])]
-        code, _, words = _simulate(place, how, step, duration, written)
+        code, _, words = run("--step", repr(step), "--duration", repr(duration), "--trajectory", csv, "--every", _every(duration / step, frames),
+                             *(["--output", outputs] if outputs else []))
         if code != 1 or options.step:
             break
         say(f"  {words[-1].strip() if words else 'without a word'}")
@@ -131,9 +132,9 @@ def _every(steps, frames):
     return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0), math.ceil(steps / frames))
 
 
-def _affordable(place, how, step, duration, say):
+def _affordable(run, step, duration, say):
     """`duration`, or as much of it as a trial says can be computed in SECONDS_AT_MOST."""
-    code, out, _ = _simulate(place, how, step, TRIAL_STEPS * step, ["--json"])
+    code, out, _ = run("--step", repr(step), "--duration", repr(TRIAL_STEPS * step), "--json")
     if code != 0:
         return duration  # the run itself will say what is wrong
     seconds_a_step = json.loads(out)["step_us"]["median"] * 1e-6
@@ -143,10 +144,6 @@ def _affordable(place, how, step, duration, say):
     fits = float(f"{max(fits, TRIAL_STEPS * step):.1g}")
     say(f"{duration:g} s would take about {duration / step * seconds_a_step / 60:.0f} minutes: only {fits:g} s of it (ask for more with --duration)")
     return fits
-
-
-def _simulate(place, how, step, duration, more):
-    return _run("simulate", place, *how, "--step", repr(step), "--duration", repr(duration), *more)
 
 
 def _run(command, scene, *more):
