@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.tools.viewer import page, program, sheet, trajectory
+from study.tools.viewer import main, page, program, trajectory
 from study.tools.viewer.program import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
@@ -232,14 +232,14 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
 
 def test_a_window_is_cut_out_of_the_motion(tmp_path):
     motion = trajectory.read(csv_of(tmp_path, "crank", times=[0.05 * k for k in range(201)]), scene_of("crank"), 999)
-    part = sheet.within(motion, (1, 3))
+    part = main.within(motion, (1, 3))
     assert part.times[0] == pytest.approx(1) and part.times[-1] == pytest.approx(3) and len(part.positions) == len(part.times)
 
 
 def test_the_sheet_shows_eight_different_instants(tmp_path):
     path = csv_of(tmp_path, "top", times=[0.05 * k for k in range(60)])
     motion = trajectory.read(path, scene_of("top"), 99)
-    pixels = imread(io.BytesIO(sheet.draw(scene_of("top"), motion, [0, 1, 0])))
+    pixels = imread(io.BytesIO(main.sheet(scene_of("top"), motion, [0, 1, 0])))
     panels = [panel for row in numpy.split(pixels, 2) for panel in numpy.split(row, 4, axis=1)]
     for place, panel in enumerate(panels):
         assert len(numpy.unique(panel.reshape(-1, panel.shape[2]), axis=0)) > 50  # it is no empty paper
@@ -247,10 +247,10 @@ def test_the_sheet_shows_eight_different_instants(tmp_path):
 
 
 def test_a_sheet_without_chromium_is_refused_with_the_cure(tmp_path, monkeypatch):
-    monkeypatch.setattr(sheet, "CHROMIUM", ("/nowhere/chromium",))
+    monkeypatch.setattr(main, "CHROMIUM", ("/nowhere/chromium",))
     motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 99)
     with pytest.raises(StudyError, match="/nowhere/chromium, which draws the sheet, is missing: run study/setup"):
-        sheet.draw(scene_of("top"), motion, [0, 1, 0])
+        main.sheet(scene_of("top"), motion, [0, 1, 0])
 
 
 @pytest.mark.parametrize("text, up", [

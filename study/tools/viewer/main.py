@@ -1,17 +1,26 @@
-# The command line of study/view: from a scene to an HTML page and a PNG sheet.
+# The command line of study/view: from a scene to an HTML page and a PNG sheet, some instants of the motion beside each other for documents, which
+# the page's own scripts draw in Chromium.
+import base64
 import os
 import re
+import subprocess
 import tempfile
 from pathlib import Path
+
+import numpy
 
 from analysis.core.errors import StudyError
 from analysis.core.files import write
 from study.core.options import Parser, positive
-from study.tools.viewer import page, program, sheet, trajectory
+from study.tools.viewer import page, program, trajectory
 
 FRAMES = 600  # in a page, at most
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
 IMPLEMENTATION = "csc_klu/refactor"
+CHROMIUM = ("/usr/bin/chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+            "--disable-background-networking", "--disable-component-update")
+SECONDS = 120  # that it may take
+PICTURE = re.compile(r'id="sheet" src="data:image/png;base64,([^"]+)"')  # what sheet.js leaves in the page
 
 
 def view(arguments):
@@ -34,7 +43,7 @@ def view(arguments):
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
     up = [int(axis == options.up) for axis in "xyz"] if options.up else program.upward(options.scene)
     html = page.render(scene, motion, note, up).encode()
-    png = sheet.draw(scene, motion, up, options.window) if options.png else None
+    png = sheet(scene, motion, up, options.window) if options.png else None
     for name, content in ((options.output, html), *([(options.png, png)] if png else [])):
         write(name, lambda partial, content=content: partial.write_bytes(content))
         print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
@@ -76,3 +85,31 @@ def _options(arguments):
             raise StudyError(f"{flag}: cannot write {name}: {why}")
     options.implementation = options.implementation or IMPLEMENTATION
     return options
+
+
+def sheet(scene, motion, up, window=None):
+    """The PNG file as bytes. `up`: the unit vector that points up in space; `window`: first and last time, s, or None for all of the motion."""
+    text = page.render(scene, within(motion, window) if window else motion, "", up, sheet=True)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "sheet.html"
+        path.write_text(text, encoding="utf-8")
+        try:
+            done = subprocess.run([*CHROMIUM, f"--user-data-dir={folder}/profile", "--dump-dom", path.as_uri()], stdin=subprocess.DEVNULL,
+                                  capture_output=True, text=True, errors="replace", timeout=SECONDS, env=os.environ | {"HOME": folder})
+        except FileNotFoundError as error:
+            raise StudyError(f"--png: {CHROMIUM[0]}, which draws the sheet, is missing: run study/setup") from error
+        except subprocess.TimeoutExpired as error:
+            raise StudyError(f"--png: {CHROMIUM[0]} has not drawn the sheet in {SECONDS} s") from error
+    found = PICTURE.search(done.stdout)
+    if not found:
+        raise StudyError(f"--png: {CHROMIUM[0]} did not draw the sheet: {(done.stderr.strip().splitlines() or ['it said nothing'])[-1][:300]}")
+    return base64.b64decode(found[1])
+
+
+def within(motion, window):
+    """The part of a motion between two times."""
+    inside = numpy.flatnonzero((motion.times >= window[0]) & (motion.times <= window[1]))
+    if len(inside) < 2:
+        raise StudyError(f"--window {window[0]:g} {window[1]:g}: the motion has fewer than two frames there; it lasts from "
+                         f"{motion.times[0]:g} to {motion.times[-1]:g} s")
+    return trajectory.Motion(motion.times[inside], motion.positions[inside], {})
