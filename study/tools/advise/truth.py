@@ -24,8 +24,7 @@ class Truth:
         axes = "xyz"[:described["dimension"]]
         points = [one["name"] for one in described["elements"]["points"] if one["kind"] in MOVING]
         points = points[::max(1, len(points) // POINTS)]
-        self.columns = tuple(f"{point}.{axis}" for point in points for axis in axes)
-        self.speeds = tuple(f"{point}.v{axis}" for point in points for axis in axes)
+        self.columns, self.speeds = (tuple(f"{point}.{v}{axis}" for point in points for axis in axes) for v in ("", "v"))
         self.shape = (len(points), len(axes))
         dense, halving = DENSE, 0
         while halving < HALVINGS and dense <= DENSEST:
