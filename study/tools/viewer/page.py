@@ -36,12 +36,12 @@ def _text(name):
 
 def _data(scene, motion, moving, up):
     low, high = bounds(scene, motion)
+    bodies = [{"name": body.name, "points": body.points, "faces": triangles} for body, triangles in zip(scene.bodies, faces(scene, motion))]
     return {
         "dimension": scene.dimension, "up": up, "times": _rounded(motion.times, 9),
         "points": [{"name": name, "kind": kind, "start": _rounded(at, 9)} for (name, kind), at in zip(scene.points, motion.positions[0])],
         "moving": moving, "low": _rounded(low), "high": _rounded(high), "typical": typical_length(scene, motion),
-        "rods": scene.rods, "springs": scene.springs,
-        "bodies": [{"name": body.name, "points": body.points, "faces": faces} for body, faces in zip(scene.bodies, faces(scene, motion))],
+        "rods": scene.rods, "springs": scene.springs, "bodies": bodies,
         "arrows": arrows(scene, motion), "coils": coils(scene, motion), "traces": traces(scene, motion),
         "curves": {name: _rounded(values) for name, values in motion.curves.items()} or None,
         "outputs": {name: {column: _rounded(values) for column, values in columns.items()} for name, columns in motion.outputs.items()}}
