@@ -15,7 +15,7 @@ from study.core.options import Parser, directory
 from study.core.profile import columns_of
 from study.core.studyset import need_records, newest, opened
 from study.tools import fragments
-from study.tools.merge import machine
+from study.tools.merge import agreement, machine
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -59,9 +59,7 @@ def faults(kept):
     with contextlib.suppress(StudyError):  # of a changed table, which is said below
         if why := machine.no_evidence(kept):
             yield f"{kept.folder} is no evidence: {why}"
-    for path in (kept.folder / "set.json", *sorted((kept.folder / "contexts").glob("*.json"))):
-        context = read_json(path)
-        context = context.get("context", context)
+    for path, context in agreement.contexts(kept).items():
         if str(context.get("dirty")).lower() != "false":
             yield f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, build and measure again"
         yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))

@@ -39,7 +39,7 @@ def unlike(first, other):
             return f"{one.folder} is no evidence: {why}"
         if any(str(context.get("dirty")).lower() != "false" for context in contexts(one).values()):
             return f"{one.folder} was measured from a tree with changes"
-    mine, its = contexts(first), contexts(other)
+    mine, its = ({path.name: context for path, context in contexts(one).items()} for one in (first, other))
     for name in [name for name in mine if name in its]:
         if differs := executor.differing(mine[name], its[name], ALIKE):
             return f"{other.folder} is of another build than {first.folder}: {differs[0]} is '{differs[2]}', not '{differs[1]}' ({name})"
@@ -47,9 +47,10 @@ def unlike(first, other):
 
 
 def contexts(studyset):
-    """{file: the context in it} of a set and of its environments."""
-    found = {"set.json": studyset.facts["context"]} | {path.name: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
-    return {name: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for name, one in found.items()}
+    """{path: the context in it} of a set and of its environments."""
+    found = {path: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
+    found = {studyset.folder / "set.json": studyset.facts["context"]} | found
+    return {path: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for path, one in found.items()}
 
 
 def compared(first, others):
