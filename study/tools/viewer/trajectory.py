@@ -25,8 +25,7 @@ class Motion:
 
 def read(path, scene, frames):
     """About `frames` rows, equally spaced, and the last. A frame's constraint violation is the largest of all rows since the frame before."""
-    with _opened(path) as file:
-        columns = _header(path, file)
+    with _opened(path) as (file, columns):
         places, curves = _places(path, columns, scene)
         table, largest = _table(path, file, columns, frames)
     positions = table[:, places].reshape(len(table), len(scene.points), scene.dimension)
@@ -39,8 +38,7 @@ def read(path, scene, frames):
 
 def read_outputs(path, scene, frames):
     """Motion.outputs from the CSV of `mbs simulate --output`, of the run whose trajectory was read: their rows are at the same times."""
-    with _opened(path) as file:
-        columns = _header(path, file)
+    with _opened(path) as (file, columns):
         table, _ = _table(path, file, columns, frames)
     return {name: {column: table[:, place] for place, column in enumerate(columns) if name in (column, column.rpartition(".")[0])}
             for name in scene.outputs}
@@ -48,18 +46,18 @@ def read_outputs(path, scene, frames):
 
 @contextmanager
 def _opened(path):
-    """The file at `path`; StudyError if it cannot be read, or is a device or a pipe, which may have no end and cannot be read twice."""
+    """(the file at `path`, names of its columns); StudyError if it cannot be read, or is a device or a pipe, which may have no end and cannot
+    be read twice."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise StudyError(f"{path} is no regular file")
     try:
         with open(path, "rb") as file:
-            yield file
+            yield file, _columns(path, file.readline(LONGEST))
     except OSError as error:
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
-def _header(path, file):
-    line = file.readline(LONGEST)
+def _columns(path, line):
     if not line.strip():
         raise StudyError(f"{path} is empty: it must be the CSV of `mbs simulate --trajectory`")
     columns = line.decode("utf-8", "replace").rstrip("\r\n").split(",")
