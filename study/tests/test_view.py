@@ -15,8 +15,8 @@ from matplotlib.image import imread
 from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.tools.viewer import picture, program, sheet, trajectory
-from study.tools.viewer.scene import from_description, upward
+from study.tools.viewer import main, page, program, trajectory
+from study.tools.viewer.program import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
 
@@ -217,7 +217,7 @@ def test_traces_are_of_points_that_move_differently(tmp_path):
     scene = scene_of("crank")
     path = csv_of(tmp_path, "crank", times=[0.05 * k for k in range(60)])
     motion = trajectory.read(path, scene, 99)
-    names = [scene.points[index][0] for index in picture.traces(scene, motion)]
+    names = [scene.points[index][0] for index in page.traces(scene, motion)]
     assert names[0] == "E" and len(names) == 2 and names[1] in "PD"
 
 
@@ -225,21 +225,21 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
     scene = scene_of("top")
     motion = trajectory.read(csv_of(tmp_path, "top"), scene, 100)
     index = {name: place for place, (name, _) in enumerate(scene.points)}
-    assert picture.arrows(scene, motion)[0]["at"] == [index[name] for name in "OTUV"]
+    assert page.arrows(scene, motion)[0]["at"] == [index[name] for name in "OTUV"]
     scene.bodies.append(type(scene.bodies[0])("L", [index["W"], index["T"]], [index["a"]]))
-    assert picture.arrows(scene, motion)[0]["at"] == [index["T"]]
+    assert page.arrows(scene, motion)[0]["at"] == [index["T"]]
 
 
 def test_a_window_is_cut_out_of_the_motion(tmp_path):
     motion = trajectory.read(csv_of(tmp_path, "crank", times=[0.05 * k for k in range(201)]), scene_of("crank"), 999)
-    part = sheet.within(motion, (1, 3))
+    part = main.within(motion, (1, 3))
     assert part.times[0] == pytest.approx(1) and part.times[-1] == pytest.approx(3) and len(part.positions) == len(part.times)
 
 
 def test_the_sheet_shows_eight_different_instants(tmp_path):
     path = csv_of(tmp_path, "top", times=[0.05 * k for k in range(60)])
     motion = trajectory.read(path, scene_of("top"), 99)
-    pixels = imread(io.BytesIO(sheet.draw(scene_of("top"), motion, [0, 1, 0])))
+    pixels = imread(io.BytesIO(main.sheet(scene_of("top"), motion, [0, 1, 0])))
     panels = [panel for row in numpy.split(pixels, 2) for panel in numpy.split(row, 4, axis=1)]
     for place, panel in enumerate(panels):
         assert len(numpy.unique(panel.reshape(-1, panel.shape[2]), axis=0)) > 50  # it is no empty paper
@@ -247,10 +247,10 @@ def test_the_sheet_shows_eight_different_instants(tmp_path):
 
 
 def test_a_sheet_without_chromium_is_refused_with_the_cure(tmp_path, monkeypatch):
-    monkeypatch.setattr(sheet, "CHROMIUM", ("/nowhere/chromium",))
+    monkeypatch.setattr(main, "CHROMIUM", ("/nowhere/chromium",))
     motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 99)
     with pytest.raises(StudyError, match="/nowhere/chromium, which draws the sheet, is missing: run study/setup"):
-        sheet.draw(scene_of("top"), motion, [0, 1, 0])
+        main.sheet(scene_of("top"), motion, [0, 1, 0])
 
 
 @pytest.mark.parametrize("text, up", [
@@ -272,7 +272,7 @@ def test_faces_are_those_of_a_solid_and_look_outward(tmp_path):
     motion.positions = numpy.concatenate([motion.positions, numpy.tile(corners, (len(motion.times), 1, 1))], axis=1)
     scene.bodies = [type(scene.bodies[0])(name, [count + k for k in corners_of], [])
                     for name, corners_of in (("box", range(8)), ("plate", (0, 1, 2, 3)), ("bar", (0, 7)))]
-    box, plate, bar = picture.faces(scene, motion)
+    box, plate, bar = page.faces(scene, motion)
     assert len(box) == 12 and plate == bar == []
     at = motion.positions[0]
     volume = sum(numpy.dot(at[a], numpy.cross(at[b], at[c])) for a, b, c in box) / 6
@@ -293,7 +293,7 @@ def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):
     assert kinds["K.x"] == "hidden" and kinds["V"] == kinds["K.w"] == "free"
     motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 100)
     hidden = [name for name, _ in scene.points].index("K.x")
-    assert hidden not in {*picture.places(scene), *picture.traces(scene, motion)}
+    assert hidden not in {*page.places(scene), *page.traces(scene, motion)}
 
 
 def test_distances_are_drawn_where_no_rod_is():
@@ -301,7 +301,7 @@ def test_distances_are_drawn_where_no_rod_is():
     listed["distances"] = [{"name": "same", "between": ["E", "O"]},
                            {"name": "tie", "between": ["C", "P"]}]
     scene = from_description({"dimension": 2, "drivers_end": None, "elements": listed}, "crank")
-    assert [rod.name for rod in scene.rods] == ["crank", "tie"]
+    assert [[scene.points[at][0] for at in rod] for rod in scene.rods] == [["O", "E"], ["C", "P"]]
 
 
 def test_the_scenes_own_outputs_are_in_the_page(tmp_path):

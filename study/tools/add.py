@@ -1,8 +1,5 @@
-# study/add NAME: times a new or changed implementation against those who lead the cells of a set: its mechanisms, in both forms of
-# the step, and its map.
-#
-# The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
-# the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
+# study/add NAME: times a new or changed implementation beside those who lead a set's mechanisms, in both forms of the step, and its map, in
+# fresh processes: what the set has of the others is never paired with new samples. README.md has what it leaves.
 import datetime
 import shutil
 from collections import Counter
@@ -118,18 +115,13 @@ def contests(studyset, newcomers, known):
         rows = (rows if "scheme" in rows else rows.assign(scheme=Setting().scheme))[rows.winner != ""]
         for (scene, scheme), led in rows.groupby(["scene", "scheme"], sort=False):
             records = [there[name] for name in dict.fromkeys(" ".join(led.record).split())]
-            timed = timing.processes(records)
-            timed = timed[timed.status == "ok"]
-            found.append(Contest(part, scene, scheme, led.variables.iloc[0], list(led.itertuples()), _words(records[0], "--scheme"),
-                                 _words(records[0], "--steps"), timed.steps.iloc[0], timed.start.iloc[0],
-                                 timed.groupby("implementation").step_us.median().to_dict(),
-                                 [name for name in newcomers if known.serves(name, *Setting(scheme).needs)]))
+            asked = records[0].options
+            form, stretch = ((f"--{name}", asked[name]) if name in asked else () for name in ("scheme", "steps"))
+            timed = timing.processes(records).loc[lambda rows: rows.status == "ok"]
+            times = timed.groupby("implementation").step_us.median().to_dict()
+            found.append(Contest(part, scene, scheme, led.variables.iloc[0], list(led.itertuples()), form, stretch, timed.steps.iloc[0],
+                                 timed.start.iloc[0], times, [name for name in newcomers if known.serves(name, *Setting(scheme).needs)]))
     return [one for one in found if one.newcomers]
-
-
-def _words(record, option):
-    words = record.cell["settings"]
-    return tuple(words[words.index(option):][:2]) if option in words else ()
 
 
 def measured(folder, name, known):
@@ -153,8 +145,8 @@ def measured(folder, name, known):
             fit = [contenders[name] for name in one.newcomers if verdicts[one][name][0] == "ok"]
             chosen = one.rivals(contenders)
             if fit and chosen:
-                records[one] = measure(lab, one.scene, [*fit, *(contenders[name] for name in chosen)], processes=count,
-                                       **_size(share, one, chosen))
+                fit += [contenders[name] for name in chosen]
+                records[one] = measure(lab, one.scene, fit, processes=count, **_size(share, one, chosen))
     lab.display.end()
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one in asked
@@ -175,8 +167,7 @@ def contexts(folder, contenders):
             key, its, here = other
             raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
                              f"its {key} is '{its}', here it is '{here}'; times of both cannot stand side by side")
-        lost = versions(then) - versions(now)
-        if lost:
+        if lost := versions(then) - versions(now):
             raise StudyError(f"{folder} is of other libraries: it has {', '.join(sorted(lost))}, here there is "
                              f"{', '.join(sorted(versions(now) - versions(then))) or 'none of it'}")
     return found
@@ -199,21 +190,18 @@ def _begin(folder, column, lab):
 
 def _gates(lab, asked, contenders):
     """{contest: {newcomer: (status, reason)}}"""
-    whole = lab.budget
-    lab.budget = GATES * whole
+    whole, lab.budget = lab.budget, GATES * lab.budget
     found = verdicts(lab, [Asked(one.scene, [contenders[name] for name in one.newcomers], settings=one.form) for one in asked],
                      each=GATE_S, seconds=2 * GATE_S, drop=True)
     lab.budget = whole
-    return {one: {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()}
-            for one, said in zip(asked, found)}
+    return {one: {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()} for one, said in zip(asked, found)}
 
 
 def _size(share, contest, rivals):
     """How many samples fill a process's share of the budget, s, and when one has waited too long for a stretch."""
     stretches = [1e-6 * contest.steps * contest.times[name] for name in rivals if name in contest.times] or [1.0]
     turns = sum(max(one, TURN) for one in (*stretches, max(stretches)))  # the newcomer taken for as slow as the slowest
-    samples = min(max(round(share / turns), 1), MOST_SAMPLES)
-    patience = max(PATIENT * max(stretches), 0.5)
+    samples, patience = min(max(round(share / turns), 1), MOST_SAMPLES), max(PATIENT * max(stretches), 0.5)
     return {"repetitions": samples, "settings": (*contest.form, *contest.stretch, "--patience", f"{patience:.3g}"),
             "seconds": 30 + 3 * samples * turns + 5 * patience}
 
@@ -239,8 +227,7 @@ def _rows(contest, known, verdicts, records):
 
 
 def _standing(rows, verdict, wrong):
-    """(status, reason) of a newcomer: what the gate says, then what its processes say; what was dropped counts where no other was
-    timed. `wrong`: what makes its times none."""
+    """(status, reason) of a newcomer: the gate's, then its processes'; what was dropped counts where no other was timed. `wrong`: with its times."""
     if verdict[0] != "ok" or wrong:
         return verdict if verdict[0] != "ok" else ("disagrees", wrong)
     lost = rows[(rows.status != "ok") & ((rows.status != "dropped") | ~(rows.status == "ok").any())]
@@ -254,9 +241,8 @@ def _compared(rows, name, ranking, before):
     ratio = timing.ratio(rows, name, ranking.winner)
     times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
     hands = "open" if ratio.low <= 1 <= ratio.high else "changes" if (ratio.high < 1) != (before == name) else "stays"
-    return {"rival": ranking.winner, "ratio": ratio.value, "low": ratio.low, "high": ratio.high, "hands": hands,
-            "step_us": times[name], "rival_us": times[ranking.winner],
-            "processes": len(timing.log_ratios(rows, name, ranking.winner))}
+    return {"rival": ranking.winner, "ratio": ratio.value, "low": ratio.low, "high": ratio.high, "hands": hands, "step_us": times[name],
+            "rival_us": times[ranking.winner], "processes": len(timing.log_ratios(rows, name, ranking.winner))}
 
 
 def _finish(folder, column, lab, rows):

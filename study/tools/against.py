@@ -1,7 +1,5 @@
-# study/against REVISION: times this tree and another revision of it, whose program is built beside.
-#
-# Two programs cannot share a process. Fresh processes alternate, old new new old, so that what drifts falls on both
-# alike; inside each all implementations take turns. A ratio is that of two neighbours, its interval one over pairs.
+# study/against REVISION: times this tree and another revision of it, whose program is built beside. Two programs cannot share a process: fresh
+# ones alternate, old new new old, so that what drifts falls on both alike. A ratio is that of two neighbours, its interval one over pairs.
 import json
 import subprocess
 from dataclasses import replace
@@ -11,12 +9,12 @@ import pandas
 from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
-from study.core import child, locks, profile as profiles
-from study.core.cell import Cell, by_environment, control, on_usual_pairs
+from study.core import child, locks
+from study.core.cell import Cell, by_environment
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import context_of, describe, listed, need_own, select, writable
+from study.core.studyset import describe, listed, need_own, select, writable
 from study.tools import shelf
 
 SECONDS = 120.0  # of a process
@@ -26,11 +24,9 @@ ORDER = (("old", 1), ("new", 1), ("new", 2), ("old", 2))  # of a round
 
 
 def against(arguments):
-    parser = Parser(prog="study/against", description="Builds another revision beside this tree and times both in "
-                    "alternating processes.")
+    parser = Parser(prog="study/against", description="Builds another revision beside this tree and times both in alternating processes.")
     parser.add_argument("revision", help="of git, for instance HEAD~1")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these implementations (folder or folder/variant)")
     parser.add_argument("--scenes", nargs="+", metavar="SCENE", default=[
         "four-bar:10", "four-bar:40", "four-bar:79", "four-bar:499"], help="four-bar:10 ... 499")
     parser.add_argument("--rounds", type=rounds, default=4, help="of two processes of each program (4)")
@@ -59,8 +55,7 @@ def against(arguments):
 
 
 def _resolve(name):
-    found = subprocess.run(["git", "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}"],
-                           cwd=ROOT, capture_output=True, text=True)
+    found = subprocess.run(["git", "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}"], cwd=ROOT, capture_output=True, text=True)
     if found.returncode != 0:
         raise StudyError(f"'{name}' is no revision of this repository")
     return found.stdout.strip()
@@ -70,10 +65,9 @@ def _build(revision, log):
     """Builds `mbs` of `revision` in a work tree of its own; the name of that build (executor.program_of)."""
     build = f"against/{revision}/build"
     tree = (ROOT / program_of(build=build)).parent.parent
+    checkout = [] if tree.exists() else [["git", "worktree", "prune"], ["git", "worktree", "add", "--detach", str(tree), revision]]
     for command in [] if (tree / "build" / "mbs").exists() else [
-            *([] if tree.exists() else [["git", "worktree", "prune"],
-                                        ["git", "worktree", "add", "--detach", str(tree), revision]]),
-            ["cmake", "-S", str(tree), "-B", str(tree / "build"), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
+            *checkout, ["cmake", "-S", str(tree), "-B", str(tree / "build"), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
             ["cmake", "--build", str(tree / "build"), "--target", "mbs_program"]]:
         built(command, f"{revision}: {' '.join(command[:2])}", log)
     return build
@@ -81,17 +75,13 @@ def _build(revision, log):
 
 def _measure(folder, options, known, names, revision, build):
     """The table of ratios."""
-    pairs = profiles.load("quick", []).blas
-    contenders = on_usual_pairs(known, pairs, names)
-    kept = shelf.open_shelf(folder, "against", context_of(control(known, pairs)), options.only, scenes=options.scenes,
-                            old=digest(ROOT / program_of(build=build))[:16])
-    lab = shelf.ToolLab(kept, "against", "runs")
+    old = digest(ROOT / program_of(build=build))[:16]
+    lab, contenders = shelf.open_shelf(folder, "against", known, options.only, names, scenes=options.scenes, old=old)
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]
-    groups = by_environment(one for one in contenders if one.variant in there)
     for scene in options.scenes:
-        for group in groups.values():
+        for group in by_environment(one for one in contenders if one.variant in there).values():
             rows += _ratios(lab, scene, group, options.rounds, build, revision)
     lab.display.end()
     return shelf.table(rows, "ratios")
@@ -112,8 +102,7 @@ def _ratios(lab, scene, group, count, build, revision):
     for number in range(1, count + 1):
         for tree, place in ORDER:
             who = group if tree == "new" else [replace(one, name=f"{one.variant}+{revision}", build=build) for one in group]
-            record = lab.one(Cell("bench", scene, tuple(who), WORDS, tree, 2 * (number - 1) + place, timed=True,
-                                  seconds=SECONDS))
+            record = lab.one(Cell("bench", scene, tuple(who), WORDS, tree, 2 * (number - 1) + place, timed=True, seconds=SECONDS))
             found[tree].append(record)
             if not record.done:
                 if len(group) > 1:
@@ -124,16 +113,16 @@ def _ratios(lab, scene, group, count, build, revision):
 
 
 def _row(name, scene, found):
-    trees = {}
+    trees = []
     for tree, records in found.items():
         try:
             rows = timing.processes(records)
         except (KeyError, TypeError) as error:
             raise StudyError(f"raw/against/{records[0].name}: lacks {error}: its program is of a revision that this "
                              "tree's study/against cannot read") from error
-        trees[tree] = rows[rows.implementation.str.partition("+")[0] == name]
+        trees.append(rows[rows.implementation.str.partition("+")[0] == name].assign(implementation=tree))
     row = {"implementation": name, "scene": scene, "record": " ".join(one[0].name for one in found.values())}
-    both = pandas.concat(one.assign(implementation=tree) for tree, one in trees.items())
+    both = pandas.concat(trees)
     wrong = both[both.status != "ok"]
     if len(wrong):
         return row | {"reason": f"{wrong.implementation.iloc[0]}: {wrong.status.iloc[0]}: {wrong.reason.iloc[0]}"}
@@ -142,5 +131,5 @@ def _row(name, scene, found):
     # By the clock, since what the processor's time covers is not alike in all revisions.
     ratio = timing.ratio(timing.apart(both, "clock_us"), "new", "old")
     middle = both.groupby("implementation").clock_us.median()
-    return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
-                  "high": ratio.high, "pairs": len(found["old"])}
+    return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
+                  "pairs": len(found["old"])}

@@ -1,9 +1,4 @@
-# Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured
-# number.
-#
-#   <!-- from the stored sets: cases -->
-#   …
-#   <!-- end -->
+# Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured number.
 import json
 import re
 
@@ -57,13 +52,16 @@ def _machines(main, others):
 
 def refresh():
     """Fills all texts of the repository anew, and the rule; the paths of those that changed."""
-    changed = []
-    for path, made in ((RULE, of_set), *((text, filled) for text in texts())):
-        before = path.read_text(encoding="utf-8")
-        if made(before) != before:
-            write_text(path, made(before))
-            changed.append(path)
-    return changed
+    return [path for path, made in ((RULE, of_set), *((text, filled) for text in texts())) if rewritten(path, made)]
+
+
+def rewritten(path, made):
+    """Whether a file has changed to what is made of its text."""
+    before = path.read_text(encoding="utf-8")
+    after = made(before)
+    if after != before:
+        write_text(path, after)
+    return after != before
 
 
 def of_set(rule):

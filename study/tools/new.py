@@ -9,14 +9,13 @@ from study.core.options import Parser
 SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
-KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
-compl concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do
-double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable namespace new
-noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires return short signed
-sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union
-unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
-TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test",
-         "harness", "engines", "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
+KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const
+consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit
+export extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+public register reinterpret_cast requires return short signed sizeof static static_assert static_cast struct switch template this thread_local
+throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
+TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
+         "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
 EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
 COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
 IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
@@ -39,7 +38,11 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        write(folder, options.name, options.library)
+        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@"), (options.name, *LIBRARIES[options.library])))
+        for path in sorted(SKELETON.iterdir()):
+            stem, _, only = path.name.partition("@")
+            if only in ("", options.library):
+                write_text(folder / stem, re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8")))
         before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
         write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:
@@ -51,26 +54,13 @@ def new(arguments):
                 "build/mbs reference four-bar:1 --moved": "the reference's numbers",
                 f"build/mbs check --implementation {options.name}": "the whole gate",
                 "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees"}
-    width = max(map(len, commands)) + 2
-    listing = "\n".join(f"  {command:{width}}# {what}" for command, what in commands.items())
-    print(f"""implementations/{options.name}/ is written and in the list. Next:
-{listing}
-The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
+    print(f"implementations/{options.name}/ is written and in the list. Next:")
+    for command, what in commands.items():
+        print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
+    print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
 bottom, and climb the ladder after each function.""")
     return 0
 
 
 def listed():
     return LIST.read_text(encoding="utf-8").split("mbs_registry(")[1].split(")")[0].split()
-
-
-def write(folder, name, library):
-    known, licence, version, include, storage = LIBRARIES[library]
-    values = {"NAME": name, "LIBRARY": known, "LICENCE": licence, "VERSION": version, "INCLUDE": include, "STORAGE": storage}
-    for path in sorted(SKELETON.iterdir()):
-        stem, _, only = path.name.partition("@")
-        if only in ("", library):
-            text = path.read_text(encoding="utf-8")
-            for key, value in values.items():
-                text = text.replace(f"@{key}@", value)
-            write_text(folder / stem, text)

@@ -5,17 +5,20 @@ import pandas
 
 from analysis.core import schema
 from analysis.core.files import write_json
+from study.core import profile as profiles
+from study.core.cell import control, on_usual_pairs
 from study.core.executor import need_same
 from study.core.front import Display
 from study.core.lab import Lab
-from study.core.studyset import StudySet, begun, need_own, need_question
+from study.core.studyset import StudySet, begun, context_of, need_own, need_question
 
 
-def open_shelf(folder, tool, context, only, **question):
-    """The StudySet in `folder`, new or continued; StudyError if it holds results of something else. `question`:
-    what must be equal for the records to be of use."""
+def open_shelf(folder, tool, known, only, names, quiet=False, **question):
+    """(the ToolLab with the set in `folder`, new or continued, the contenders of these names); StudyError if it holds results of something
+    else, such as of another `question`."""
     need_own(folder)
-    found = StudySet(folder)
+    pairs, found = profiles.load("quick", []).blas, StudySet(folder)
+    context = context_of(control(known, pairs))
     if (folder / "set.json").exists():
         need_same(found.facts["context"], context, str(folder))
         need_question(found, profile=tool, only=only, parts=[], **question)
@@ -23,7 +26,7 @@ def open_shelf(folder, tool, context, only, **question):
         write_json(folder / "set.json", begun(tool, only, [], context, **question))
     found.need_programs(["mbs"])
     found.clear()
-    return StudySet(folder)
+    return ToolLab(StudySet(folder), tool, "runs", quiet=quiet), on_usual_pairs(known, pairs, names)
 
 
 def table(rows, name):

@@ -1,6 +1,5 @@
-# study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers.
-#
-# Pages and figures are left out, since study/figures draws them from these; pictures that a text shows are kept.
+# study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers. Pages and figures are left out,
+# since study/figures draws them from these; pictures that a text shows are kept.
 import contextlib
 import os
 import re
@@ -16,7 +15,7 @@ from study.core.options import Parser, directory
 from study.core.profile import columns_of
 from study.core.studyset import need_records, newest, opened
 from study.tools import fragments
-from study.tools.merge import machine
+from study.tools.merge import agreement, machine
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -55,15 +54,12 @@ def short(processor):
 
 
 def faults(kept):
-    """What is wrong with a set, a line each: a tree with changes, several commits or machines, a part that is missing, tables that were
-    changed or are not those of its records."""
+    """What is wrong with a set, a line each: a changed tree, several commits or machines, a missing part, tables that its records do not make."""
     usual = kept.facts["context"]
     with contextlib.suppress(StudyError):  # of a changed table, which is said below
         if why := machine.no_evidence(kept):
             yield f"{kept.folder} is no evidence: {why}"
-    for path in (kept.folder / "set.json", *sorted((kept.folder / "contexts").glob("*.json"))):
-        context = read_json(path)
-        context = context.get("context", context)
+    for path, context in agreement.contexts(kept).items():
         if str(context.get("dirty")).lower() != "false":
             yield f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, build and measure again"
         yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))

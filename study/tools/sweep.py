@@ -1,5 +1,10 @@
-# study/sweep: what a table of `mbs sweep` shows. All parameters with one result, and that over two of them.
+# study/sweep: what a table of `mbs sweep` shows. All parameters with one result, and that over two of them. With --cluster the table is made
+# first: its parts as an array job of a cluster.
+import os
 import re
+import shlex
+import subprocess
+import time
 import zlib
 from pathlib import Path
 
@@ -11,10 +16,14 @@ from scipy.stats import binned_statistic_2d
 
 from analysis.core import style
 from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_text
 from analysis.core.outcomes import FINISHED
-from study.core import cluster
+from study.core import locks
+from study.core.cluster import end_jobs, profile_folder, runs
+from study.core.executor import USAGE, program_of
+from study.core.front import Display
+from study.core.node import home
 from study.core.options import Parser
-from study.tools import sweep_cluster
 
 LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
 PARTS = 16    # of a sweep on a cluster
@@ -39,7 +48,7 @@ def sweep(arguments):
     if options.parts is not None and (options.parts < 1 or not words):
         raise StudyError(f"--parts: found {options.parts}{'' if words else ' without --cluster'}, allowed is 1 or more, with --cluster")
     if words:
-        sweep_cluster.run(words, options.table, options.parts or PARTS, cluster.profile_folder(options.cluster))
+        on_cluster(words, options.table, options.parts or PARTS, profile_folder(options.cluster))
     table, parameters, result = read(options.table, options.of)
     over = options.over or [name for name in parameters if table[name].nunique() > 1][:2] or parameters[:1]
     if unknown := [name for name in over if name not in parameters]:
@@ -101,15 +110,13 @@ def lines(axes, table, columns):
         chosen = chosen.iloc[numpy.unique(numpy.linspace(0, len(chosen) - 1, min(LINES, len(chosen))).astype(int))]
         ways = numpy.stack([numpy.broadcast_to(places, chosen.shape), chosen.to_numpy()], axis=2)
         look = {"array": chosen[columns[-1]].to_numpy(), "cmap": plt.get_cmap("viridis")} if finished else {"color": FAILED}
-        axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look,
-                                           zorder=1 if finished else 2))
+        axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look, zorder=1 if finished else 2))
     axes.set(xlim=(-0.3, len(columns) - 0.7), ylim=(-0.2, 1.12), xticks=places, yticks=[])
     axes.set_xticklabels(columns, rotation=20, ha="right")
     for place, name in zip(places, columns):
         axes.axvline(place, color="#444444", linewidth=0.8, zorder=3)
         for y, value in ((1.03, high[name]), (-0.06, low[name])):
-            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8, zorder=4,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
+            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8, zorder=4, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     axes.spines[:].set_visible(False)
     shown = min(LINES, int(table["finished"].sum()))
     title = "Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished"
@@ -131,8 +138,7 @@ def surface(axes, table, over, result):
 
 
 def edges(values):
-    """Of the cells of a parameter: one a value where these are few, else of one width, so many that cells of two parameters have some
-    values each."""
+    """Of a parameter's cells: one a value where these are few, else of one width, so many that cells of two parameters have some values each."""
     distinct = numpy.unique(values)
     if 1 < len(distinct) <= CELLS:
         inner = (distinct[:-1] + distinct[1:]) / 2
@@ -147,3 +153,65 @@ def curve(axes, table, name, result):
     axes.plot(failed, numpy.zeros(len(failed)), "x", color=FAILED, transform=axes.get_xaxis_transform(), clip_on=False)
     axes.set(xlabel=name, ylabel=result)
     axes.set_title(result + ("; crosses: lanes failed" if len(failed) else ""))
+
+
+def on_cluster(words, table, count, profile):
+    """Makes the table that one process would have written. `words`: what `mbs sweep` gets besides its output; `count`: parts; `profile`: the
+    cluster's folder. What is done of parts is kept beside the table until it is there. A table that these words made stays as it is."""
+    if not (profile / "array").is_file():
+        raise StudyError(f"--cluster: {profile} has no script array: study/cluster/README.md says what it does")
+    folder = Path(f"{table}.parts").absolute()
+    script = _script(words, count, folder)
+    if Path(table).exists() and _text(folder / "part.sh") != script:
+        raise StudyError(f"{table}: found a file that this command did not make, allowed is another name; without --cluster it is drawn")
+    home(folder).mkdir(parents=True, exist_ok=True)
+    parts = [folder / f"part-{number}" for number in range(1, count + 1)]
+    with locks.only_one(folder):
+        end_jobs(folder, profile)
+        if not Path(table).exists():
+            write_text(folder / "part.sh", script)
+            _make(table, folder, profile, parts)
+        for path in [*parts, *folder.glob("done-*"), *folder.glob("log-*")]:
+            path.unlink(missing_ok=True)
+
+
+def _script(words, count, folder):
+    """Runs one part; a lane that fails is a row, and no failure of the part. A part that is there may be another sweep's: only
+    what `mbs` has taken as its own is done."""
+    command, beside = shlex.join([str(ROOT / program_of()), "sweep", *words, "--resume"]), shlex.quote(str(folder))
+    return (f"cd {shlex.quote(os.getcwd())}\n"
+            f'{command} --shard "$1/{count}" --output {beside}/part-"$1" || [ $? = 1 ] || exit 2\n'
+            f'touch {beside}/done-"$1"\n')
+
+
+def _make(table, folder, profile, parts):
+    done = [folder / f"done-{number}" for number in range(1, len(parts) + 1)]
+    for mark in done:
+        mark.unlink(missing_ok=True)
+    try:
+        given = subprocess.run([str(profile / "array"), str(len(done)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
+        if given.returncode:
+            raise StudyError(f"{profile / 'array'}: {_last(given.stderr, 'failed')}")
+        display = Display()
+        while runs(folder, profile, given.stdout.strip()):
+            display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
+            time.sleep(1)
+        display.end()
+    finally:
+        end_jobs(folder, profile)
+    for number, mark in enumerate(done, 1):
+        if not mark.exists():
+            raise StudyError(f"part {number} of {len(parts)} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
+                             "the same command goes on where it was")
+    merged = subprocess.run([str(ROOT / program_of()), "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
+    if merged.returncode >= USAGE or merged.returncode < 0:
+        raise StudyError(_last(merged.stderr, "mbs merge-sweep does not work"))
+
+
+def _text(path):
+    return path.read_text(errors="replace") if path.exists() else ""
+
+
+def _last(text, otherwise):
+    """The last line of what a program said."""
+    return (text.strip().splitlines() or [otherwise])[-1][:300]

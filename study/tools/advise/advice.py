@@ -25,9 +25,7 @@ class Question:
     budget: float  # s
     step: float | None = None  # s, where it is given
 
-    @property
-    def first_step(self):
-        return self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS))
+    first_step = property(lambda self: self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS)))
 
 
 @dataclass
@@ -48,13 +46,10 @@ class Advice:
     helps: list = field(default_factory=list)       # options that would help, each a sentence
     cut_short: list = field(default_factory=list)   # sentences
     hurried: bool = False                           # more time might have changed the answer
-    waited: float = 0.0                             # share of the time of runs in which other programs ran
-    seconds: float = 0.0
 
     def serving(self, setting):
         """Who of those tried serves a setting, fastest first."""
-        able = serving(setting, self.variants)
-        return [name for name in self.speeds if name in able]
+        return serving(setting, {name: self.variants[name] for name in self.speeds})
 
     @property
     def pilot_error(self):
@@ -79,19 +74,16 @@ def advise(question, settings, described, variants, run):
         verify(advice, run)
         if not advice.verified:
             what_helps(advice, run)
-    advice.seconds, advice.waited = run.seconds, run.waited
     return advice
 
 
 def _pilots(advice, settings, run):
     question, start = advice.question, advice.question.first_step
     duration = question.duration
-    while (3e-6 * run.slowdown * min(advice.speeds.values()) * duration / start > question.budget / 40
-           and duration > 100 * start):
+    while 3e-6 * run.slowdown * min(advice.speeds.values()) * duration / start > question.budget / 40 and duration > 100 * start:
         duration /= 2  # a scene this dear gets pilots of a part of the motion
     if duration < question.duration:
-        advice.cut_short.append(f"error pilots cover {duration:g} of {question.duration:g} s, and were held to that "
-                                "share of the error")
+        advice.cut_short.append(f"error pilots cover {duration:g} of {question.duration:g} s, and were held to that share of the error")
     advice.pilot_duration = duration
 
     def pilot(setting, step):
@@ -101,8 +93,7 @@ def _pilots(advice, settings, run):
         if expected > run.left(PILOT_SHARE):
             return None
         run.tell(f"error pilots: {setting.name}, step {step:g} s")
-        found = run.pilot(setting, name, step, duration,
-                          min(question.budget / 10 + 4 * expected, max(1.0, run.left(TIMING_SHARE))))
+        found = run.pilot(setting, name, step, duration, min(question.budget / 10 + 4 * expected, max(1.0, run.left(TIMING_SHARE))))
         return None if found.status == "timeout" else found
 
     def quick(setting, step):
@@ -125,8 +116,7 @@ def _race(advice, run):
     promises = {}  # {(setting, implementation): us a simulated second}
     for setting, found in advice.found.items():
         names = advice.serving(setting) if found.chosen else []
-        promises |= {(setting, name): found.step_us() / found.chosen * advice.speeds[name] / advice.speeds[names[0]]
-                     for name in names}
+        promises |= {(setting, name): found.step_us() / found.chosen * advice.speeds[name] / advice.speeds[names[0]] for name in names}
     if not promises:
         return
     least = min(promises.values())
@@ -134,7 +124,7 @@ def _race(advice, run):
         one = timing.Candidate(setting, name, question.step or tidy(advice.found[setting].chosen, question.duration))
         advice.candidates.append(one)
         if promise > SLOWER * least:
-            one.drop(f"promises {promise / least:.2f} times the least time, by pilots and probe")
+            one.reason = f"promises {promise / least:.2f} times the least time, by pilots and probe"
     length = timing.stretch(question.duration, least, run.left(TIMING_SHARE) / (run.slowdown * REPEATS),
                             LEAST_STEPS * max(one.step for one in advice.candidates if not one.out))
     limit = max(5.0, 1e-5 * run.slowdown * REPEATS * least * length)
@@ -142,6 +132,5 @@ def _race(advice, run):
     def timed(one, number):
         run.tell(f"timing: round {number}, {one.implementation}, {one.setting.name}")
         return run(f"round{number}", one.setting, one.implementation, one.step, length, limit)
-    if not timing.race(advice.candidates, timed, lambda: run.left(TIMING_SHARE), question.deadline_us,
-                       shorter=not question.step):
+    if not timing.race(advice.candidates, timed, lambda: run.left(TIMING_SHARE), question.deadline_us, shorter=not question.step):
         advice.hurry("no time was left for all rounds of timing")

@@ -16,16 +16,15 @@ BUSY = 0.05       # share of the time of runs in which other programs had the pr
 
 def as_json(advice, run, folder):
     met = advice.verified is not None
-    answer = {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met,
-              "advice": _advised(advice) if met else None, "runner_up": None, "refused": _refused(advice) if met else [],
-              "why_not": None if met else _why_not(advice), "helps": advice.helps,
-              "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short + _busy(advice.waited),
-              "seconds": round(advice.seconds, 2), "waited": round(advice.waited, 3),
-              "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out,
-              "candidates": [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-                              "advised": met and one is advice.chosen, "reason": one.reason} | _times(one) for one in advice.candidates],
-              "runs": run.rows, "results": str(folder)}
-    return answer | {"runner_up": _runner_up(answer) if met else None}
+    candidates = [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step, "advised": met and one is advice.chosen,
+                   "reason": one.reason} | _times(one) for one in advice.candidates]
+    told = _advised(advice) if met else None
+    return {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met, "advice": told,
+            "runner_up": _runner_up(candidates, told) if met else None, "refused": _refused(advice) if met else [],
+            "why_not": None if met else _why_not(advice), "helps": advice.helps, "pilot_duration": advice.pilot_duration,
+            "cut_short": advice.cut_short + _busy(run.waited), "seconds": round(run.seconds, 2), "waited": round(run.waited, 3),
+            "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out, "candidates": candidates,
+            "runs": run.rows, "results": str(folder)}
 
 
 def _busy(waited):
@@ -38,19 +37,16 @@ def _times(one):
     if not one.rows:
         return {"step_us": None, "us_per_second": None, "rounds": 0}
     middle, low, high = one.us_per_second()
-    return {"step_us": {"median": middle * one.step, "low": low * one.step, "high": high * one.step,
-                        "p99": one.p99_us()},
+    return {"step_us": {"median": middle * one.step, "low": low * one.step, "high": high * one.step, "p99": one.p99_us()},
             "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows)}
 
 
 def _advised(advice):
     one, row, changes = advice.chosen, advice.verified, dict(advice.chosen.setting.changes)
     low, high = expected_error(advice, one, row)
-    return {"implementation": one.implementation, "setting": one.setting.name,
-            "scheme": one.setting.scheme, "changes": changes, "precision": changes.get("precision", "double"), "step": one.step,
-            "penalty": row["penalty"], "tolerance": row["tolerance"],
-            "status": advice.outcome["status"], "status_reason": advice.outcome["reason"],
-            "verified_over": row["duration"],
+    return {"implementation": one.implementation, "setting": one.setting.name, "scheme": one.setting.scheme, "changes": changes,
+            "precision": changes.get("precision", "double"), "step": one.step, "penalty": row["penalty"], "tolerance": row["tolerance"],
+            "status": advice.outcome["status"], "status_reason": advice.outcome["reason"], "verified_over": row["duration"],
             "error": {"estimate": row["estimate"], "low": low, "high": high, "exact": row["exact"]},
             **_times(one), "deadline_misses": row["deadline_misses"], "steps": row["steps"],
             "command": advised(advice.outcome["command"], advice.variants[one.implementation]["library"], advice.question.duration),
@@ -58,41 +54,36 @@ def _advised(advice):
 
 
 def _setting(setting, advice):
-    told = {"setting": setting.name, "step": None, "pilots": []}
     found = advice.found.get(setting)
     if not found:
-        return told | {"reason": fits(setting, advice.described) or (
+        return {"setting": setting.name, "step": None, "pilots": [], "reason": fits(setting, advice.described) or (
             "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it")}
-    orders = halvings(found.pilots)
-    return told | {"step": found.chosen, "reason": found.reason, "pilots": [
-        asdict(pilot) | {"order": orders.get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
-        for pilot in found.pilots]}
+    pilots = [asdict(pilot) | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
+              for pilot in found.pilots]
+    return {"setting": setting.name, "step": found.chosen, "pilots": pilots, "reason": found.reason}
 
 
-def _runner_up(answer):
+def _runner_up(candidates, told):
     """The second fastest candidate and why it lost; None if no other was timed."""
-    timed = [one for one in answer["candidates"] if one["rounds"] and not one["advised"]]
-    if not timed:
+    timed = (one for one in candidates if one["rounds"] and not one["advised"])
+    second = min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]), default=None)
+    if not second:
         return None
-    second = min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]))
-    times, best = second["us_per_second"], answer["advice"]["us_per_second"]
+    times, best = second["us_per_second"], told["us_per_second"]
     ratio = times["median"] / best["median"]
-    why = second["reason"] or (f"{ratio:.2f} times the time of a simulated second"
-                               + ", which the rounds do not tell apart" * (times["low"] <= best["high"]))
+    why = second["reason"] or (
+        f"{ratio:.2f} times the time of a simulated second" + ", which the rounds do not tell apart" * (times["low"] <= best["high"]))
     return {key: second[key] for key in ("implementation", "setting", "step", "us_per_second")} | {"ratio": ratio, "why": why}
 
 
 def _refused(advice):
-    """Why what would have been faster than the advice is not advised: [{"setting", "step", "why"}], whole runs that failed,
-    and the slowest pilot of each such setting, the fastest first."""
-    best, found = advice.chosen.us_per_second()[0], []
-    for row in advice.verifications[:-1]:
-        found.append((0.0, row["setting"], row["step"], row["refused"]))
+    """Why what would be faster is not advised: whole runs that failed, and the slowest pilot of each such setting, the fastest first."""
+    best = advice.chosen.us_per_second()[0]
+    found = [(0.0, row["setting"], row["step"], row["refused"]) for row in advice.verifications[:-1]]
     for one in advice.found.values():
-        faster = [pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
-                  and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting])]
-        if faster:
-            pilot = min(faster, key=lambda pilot: pilot.step)
+        faster = (pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
+                  and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting]))
+        if pilot := min(faster, key=lambda pilot: pilot.step, default=None):
             why = f"estimate {number(pilot.estimate)} m" if pilot.valid else f"{pilot.status}: {pilot.reason}"
             if pilot.valid and pilot.estimate <= advice.pilot_error:
                 why += ", and halving the step does not show it to be right"
@@ -103,38 +94,31 @@ def _refused(advice):
 def _why_not(advice):
     found, question = advice.found.values(), advice.question
     if not advice.speeds:
-        return "no implementation simulates this scene: " + _distinct(f"{row['status']}, {row['reason']}" for row in advice.probe)
-    late = min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None)
-    if late:
+        return "no implementation simulates this scene: " + "; ".join(dict.fromkeys(f"{row['status']}, {row['reason']}" for row in advice.probe))
+    if late := min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None):
         return (f"99 % of the steps are not done within the deadline: {late.reason} with {late.implementation}, "
                 f"{late.setting.name}, step {late.step:g} s")
     if advice.verifications:
         return "no candidate kept it over the whole time"
     if any(one.chosen for one in found):
         return "no candidate could be timed"
-    slow = [one.reason for one in found if one.chosen_us > (question.deadline_us or math.inf)]
-    if slow:
+    if slow := [one.reason for one in found if one.chosen_us > (question.deadline_us or math.inf)]:
         return f"what is accurate enough is too slow: {slow[0]}"
     pilots = [pilot for one in found for pilot in one.pilots]
     if pilots and not any(pilot.status in FINISHED for pilot in pilots):
-        return "no pilot came to its end: " + _distinct(f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS])
+        reasons = (f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS])
+        return f"no pilot came to its end: {'; '.join(dict.fromkeys(reasons))}"
     return ("no setting reaches the error" + (f" in steps of {question.step:g} s" if question.step else "")
             + (f" within the budget of {question.budget:g} s" if advice.hurried else ""))
 
 
-def _distinct(sentences):
-    return "; ".join(dict.fromkeys(sentences))
-
-
 def text(answer):
-    asked = answer["question"]
+    asked, runs = answer["question"], answer["runs"]
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
              + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
-             + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
-    lines += _advice_lines(answer) if answer["met"] else [
-        "", f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
-    runs, settings = answer["runs"], [entry for entry in answer["settings"] if entry["pilots"]]
-    tried = (f"{len(settings)} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
+             + (f", in steps of {asked['step']:g} s" if asked["step"] else ""), ""]
+    lines += _advice_lines(answer) if answer["met"] else [f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
+    tried = (f"{sum(bool(one['pilots']) for one in answer['settings'])} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
              f"{len({run['implementation'] for run in runs})} implementations, "
              f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
     return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [tried]), *_rows("raw files", [answer["results"]])])
@@ -157,11 +141,10 @@ def _error(error):
 
 def _advice_lines(answer):
     told, second = answer["advice"], answer["runner_up"]
-    error, step, times = told["error"], told["step_us"], told["us_per_second"]
+    step, times = told["step_us"], told["us_per_second"]
     rows = {"implementation": [told["implementation"]], "settings": [told["setting"]], "step": [f"{told['step']:g} s"],
             "penalty factor": [f"{number(told['penalty'], 4)}, automatic"], "tolerance": [f"{number(told['tolerance'])} m"],
-            "precision": [told["precision"]],
-            "expected error": [f"{_error(error)}, verified over {told['verified_over']:g} s"],
+            "precision": [told["precision"]], "expected error": [f"{_error(told['error'])}, verified over {told['verified_over']:g} s"],
             "ends as": _ends_as(told),
             "time per step": [f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
                               f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"],
@@ -170,9 +153,8 @@ def _advice_lines(answer):
         rows["deadline"] = [f"{told['deadline_misses']} of {told['steps']} steps took longer"]
     if second:
         rows["runner-up"] = [f"{second['implementation']}, {second['setting']}, step {second['step']:g} s", second["why"]]
-    rows["faster, but refused"] = [f"{one['setting']}, step {one['step']:g} s: {one['why']}"
-                                   for one in answer["refused"][:MOST_REFUSED]]
-    return ["", "Run this (--half-step checks its error):", "", f"  {told['command']}", "",
+    rows["faster, but refused"] = [f"{one['setting']}, step {one['step']:g} s: {one['why']}" for one in answer["refused"][:MOST_REFUSED]]
+    return ["Run this (--half-step checks its error):", "", f"  {told['command']}", "",
             *(line for name, values in rows.items() for line in _rows(name, values))]
 
 
@@ -180,6 +162,5 @@ def _ends_as(told):
     """How the advised line ends, and why that is no objection."""
     if told["status"] in GOOD:
         return [told["status"]]
-    return [f"{told['status']}: {told['status_reason']}",
-            "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
-            f"{number(told['error']['high'])} m at most"]
+    return [f"{told['status']}: {told['status_reason']}", "by the program's own bounds, which know nothing of the error that you asked for; half "
+            f"the step shows {number(told['error']['high'])} m at most"]

@@ -22,15 +22,12 @@ class Pilot:
     step_us: float = math.nan  # median time of a step: one run must do, even on a busy machine
     reason: str = ""
 
-    @property
-    def valid(self):
-        return self.status in FINISHED and self.estimate is not None
+    valid = property(lambda self: self.status in FINISHED and self.estimate is not None)
 
 
 @dataclass(frozen=True)
 class Next:
-    """What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or
-    given up for a reason."""
+    """What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or given up for a reason."""
     step: float | None = None
     chosen: float | None = None
     reason: str = ""
@@ -47,9 +44,8 @@ def close(one, other):
 
 
 def counts(step, pilots, error=0.0):
-    """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one
-    that ends there, shows an order of at least 1, or leaves both estimates below a hundredth of `error` (a
-    motion that steps hardly change shows no order)."""
+    """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one that ends there, shows an order
+    of at least 1, or leaves both estimates below a hundredth of `error` (a motion that steps hardly change shows no order)."""
     orders = halvings(pilots)
     at = next((at for start in (step, 2 * step) for at in orders if close(at, start)), None)
     if at is None:
@@ -81,9 +77,8 @@ def by_order(step, estimate, pilots, order):
 
 
 def most(step, estimate, pilots, order, error):
-    """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's
-    may be, of which pilots tell, of the order that they show where theirs is longer; where there are none, by that order
-    alone. Infinite where they show none."""
+    """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's may be, of which
+    pilots tell, of the order that they show where theirs is longer; where there are none, by that order alone. Infinite where they show none."""
     halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
     if halves:
         half = min(halves, key=lambda pilot: pilot.step)
@@ -108,18 +103,14 @@ def possible(step, duration):
 
 
 def next_step(pilots, error, order, start, duration):
-    """The Next of a setting with these pilots, on the ladder start·2^k but for one half-way (√2) to a step
-    where the motion is lost."""
+    """The Next of a setting with these pilots, on the ladder start·2^k but for one half-way (√2) to a step where the motion is lost."""
     if not pilots:
         return Next(step=start)
-
-    def find(step):
-        return next((pilot for pilot in pilots if close(pilot.step, step)), None)
-    good = sorted((pilot for pilot in pilots if pilot.valid and pilot.estimate <= error
-                   and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01), key=lambda pilot: -pilot.step)
-    for pilot in good:
-        step = pilot.step
-        reached = known(pilot, pilots, error, order)
+    find = lambda step: next((pilot for pilot in pilots if close(pilot.step, step)), None)
+    good = (pilot for pilot in pilots if pilot.valid and pilot.estimate <= error
+            and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01)
+    for pilot in sorted(good, key=lambda pilot: -pilot.step):
+        step, reached = pilot.step, known(pilot, pilots, error, order)
         if reached <= error:
             longer, between = find(2 * step), find(math.sqrt(2) * step)
             if longer is None and possible(2 * step, duration):
@@ -171,22 +162,21 @@ def _shorter(pilots, error, order, duration):
     settled = len(valid) > 5 or any(counts(pilot.step, pilots) for pilot in valid)
     if settled and len(valid) >= 3 and valid[0].estimate >= valid[1].estimate >= valid[2].estimate:
         best = min(valid, key=lambda pilot: pilot.estimate)
-        return Next(reason=f"shorter steps do not help: estimate {best.estimate:.2g} m at step "
-                           f"{best.step:g} s, {valid[0].estimate:.2g} m at {valid[0].step:g} s")
+        return Next(reason=f"shorter steps do not help: estimate {best.estimate:.2g} m at step {best.step:g} s, {valid[0].estimate:.2g} m at "
+                           f"{valid[0].step:g} s")
     factor = 2.0
     if valid and valid[0].step == least and valid[0].estimate > error and counts(least, pilots):
         # The order shown tells how far; one halving less, as two steps must show it there.
         halvings_left = math.log2(valid[0].estimate / error) / local_order(least, pilots, order)
         factor = min(JUMP, 2.0 ** max(1, math.floor(halvings_left)))
-    if not possible(least / factor, duration):
-        lost = min(pilots, key=lambda pilot: pilot.step)
-        return Next(reason=f"no step down to {least:g} s: {lost.reason or lost.status}")
-    return Next(step=least / factor)
+    if possible(least / factor, duration):
+        return Next(step=least / factor)
+    lost = min(pilots, key=lambda pilot: pilot.step)
+    return Next(reason=f"no step down to {least:g} s: {lost.reason or lost.status}")
 
 
 def tidy(step, duration):
-    """The longest step of three digits, at most 5 % shorter than `step`, that fits whole into `duration`;
-    or else of three digits."""
+    """The longest step of three digits, at most 5 % shorter than `step`, that fits whole into `duration`; or else of three digits."""
     unit = 10.0 ** math.floor(math.log10(step) - 2)
     most_units = math.floor(step / unit * (1 + 1e-9))
     values = [float(f"{number * unit:.6g}") for number in range(most_units, math.ceil((1 - TIDY) * most_units) - 1, -1)]

@@ -1,7 +1,9 @@
 # What a validation leaves: a row for each question and each run of the search, and a page of what that adds up to.
 import datetime
 import subprocess
+from pathlib import Path
 
+import jinja2
 import pandas
 
 from analysis.core.files import ROOT, write, write_text
@@ -11,11 +13,6 @@ QUESTIONS, SEARCHED, PAGE = "validation.csv", "searched.csv.xz", "README.md"
 BEGUN = {".lock", "scenes", QUESTIONS, SEARCHED, PAGE}  # its folder
 SHOWN = ["scene", "implementation", "setting", "step", "status", "exact", "us_per_second", "pruned"]  # of a run of the search
 MOST, LATEST = 1.3, 60.0  # times the best found that an advised run may take; s, of an answer
-ABOUT = """`study/advise --validate` writes this page. A question is a mechanism and an error that no point may exceed: a hundredth, a
-thousandth or a ten-thousandth of the length of its fastest part. The advised run is held to the motion on which two schemes agree, or
-to the exact one. It is timed in the same rounds as the best of an exhaustive search over implementation, setting and step.
-`validation.csv` has a row for each question, `searched.csv.xz` one for each run of the search. Answers are timed by the clock. *Others* is
-the largest share of the processor that other programs had meanwhile. `study/tools/advise/README.md` says more."""
 
 
 def origin(context):
@@ -34,14 +31,13 @@ def keep(results, scene, rows, searched):
         known = read(results, name).to_dict("records") if (results / name).exists() else []
         table = pandas.DataFrame([row for row in known if row["scene"] != scene] + [{"scene": scene} | row for row in found],
                                  columns=SHOWN if name == SEARCHED else None)
-        order = [column for column in ("kind", "n", "scene", "error") if column in table]
-        write(results / name, lambda partial, table=table.sort_values(order, kind="stable"): table.to_csv(
-            partial, index=False, float_format="%.4g", compression="xz" if name == SEARCHED else None))
+        table = table.sort_values([column for column in ("kind", "n", "scene", "error") if column in table], kind="stable")
+        write(results / name, lambda partial, table=table: table.to_csv(partial, index=False, float_format="%.4g"))
     write_text(results / PAGE, page(read(results)))
 
 
 def read(results, name=QUESTIONS):
-    return pandas.read_csv(results / name, dtype={"commit": str}, compression="xz" if name == SEARCHED else None)
+    return pandas.read_csv(results / name, dtype={"commit": str})
 
 
 def held(table):
@@ -60,19 +56,13 @@ def sentence(table):
 def page(table):
     asked = table[table.asked]
     ok = held(asked)
-    lines = ["# Is the advice right?", "", f"{sentence(table)}.", "", ABOUT, "", *_rows(
-        ["kind", "mechanisms", "variables", "questions", "as accurate as asked", f"at most {MOST:g} times the best",
-         "slowest, times the best", f"within {LATEST:g} s", "longest answer, s", "others, %", "settings advised"],
-        (_kind(kind, rows, ok.loc[rows.index]) for kind, rows in asked.groupby("kind")))]
-    lines += ["", "## What did not hold", "", *_rows(
-        ["mechanism", "error asked, m", "error, m", "times the best", "answer, s", "advised", "best found"],
-        (_failed(row) for row in asked[~ok.all(axis=1)].itertuples()))]
-    lines += ["", "## Not asked", "", "Two schemes do not agree on the motion to a tenth of the error, so nobody knows what is right.", "",
-              *_rows(["mechanism", "errors, m"], ([scene, ", ".join(map(number, rows.error))]
-                                                  for scene, rows in table[~table.asked].groupby("scene")))]
-    lines += ["", "## Measured", "", *_rows(["commit", "processor", "date", "mechanisms"], (
-        [*key, rows.scene.nunique()] for key, rows in table.groupby(["commit", "processor", "date"])))]
-    return "\n".join(lines) + "\n"
+    kinds = [_kind(kind, rows, ok.loc[rows.index]) for kind, rows in asked.groupby("kind")]
+    failed = [_failed(row) for row in asked[~ok.all(axis=1)].itertuples()]
+    others = [(scene, ", ".join(map(number, rows.error))) for scene, rows in table[~table.asked].groupby("scene")]
+    origins = [(*key, rows.scene.nunique()) for key, rows in table.groupby(["commit", "processor", "date"])]
+    text = Path(__file__).with_name("page.md.j2").read_text(encoding="utf-8")
+    return jinja2.Template(text, trim_blocks=True, undefined=jinja2.StrictUndefined).render(
+        sentence=sentence(table), kinds=kinds, failed=failed, others=others, origins=origins, most=MOST, latest=LATEST)
 
 
 def _kind(kind, rows, ok):
@@ -88,9 +78,3 @@ def _failed(row):
     return [row.scene, number(row.error), number(row.exact), number(row.ratio), number(row.seconds, 2),
             line(row.advised_implementation, row.advised_setting, row.advised_step) if row.met else row.why_not,
             line(row.best_implementation, row.best_setting, row.best_step)]
-
-
-def _rows(names, rows):
-    """A table, or that there is nothing."""
-    found = [f"| {' | '.join(map(str, row))} |" for row in rows]
-    return [f"| {' | '.join(names)} |", "|---" * len(names) + "|", *found] if found else ["Nothing."]

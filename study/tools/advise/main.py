@@ -4,14 +4,14 @@ import math
 import sys
 import time
 from dataclasses import asdict
+from functools import partial
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
-from study.core import locks, profile as profiles
-from study.core.cell import control, on_usual_pairs
+from study.core import locks
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, describe, listed, need_own, select, writable
+from study.core.studyset import describe, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
@@ -19,7 +19,7 @@ from study.tools.advise.evidence import BEGUN
 from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
 from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
-from study.tools.shelf import ToolLab, open_shelf
+from study.tools.shelf import open_shelf
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("--error", "--deadline-us", "--step", "--duration", "--budget", "--json")
@@ -27,7 +27,25 @@ DEFAULT = ROOT / "results" / "local" / "advice"
 
 
 def advise(arguments):
-    options = _parser().parse_args(arguments)
+    parser = Parser(prog="study/advise", description="Which implementation, step and settings simulate SCENE with positions as accurate as E, "
+                    "in the least time? Runs pilots of that very scene; takes about a minute. Exit status 1: no setting is good enough.")
+    parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
+                        "with --validate kinds of its list and any scenes")
+    parser.add_argument("--error", type=positive, metavar="E", help="largest position error of any point over the whole time, m")
+    parser.add_argument("--deadline-us", type=positive, metavar="D", help="99 %% of the steps must be done within D microseconds")
+    parser.add_argument("--step", type=seconds, metavar="S", help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed "
+                        "frame. If a frame takes k steps, give a k-th of it (1/240 for four of them), and a k-th of its time as --deadline-us")
+    parser.add_argument("--duration", type=positive, metavar="T", help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--budget", type=positive, metavar="S", help=f"seconds for all pilots and timings ({BUDGET:g}). The answer says what did "
+                        "not fit")
+    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
+    parser.add_argument("--results", type=directory, metavar="DIR", help="where raw files are kept (results/local/advice/, one folder a "
+                        "question); with --validate its tables and page, too")
+    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
+    parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive search on families of mechanisms and "
+                        "standard problems, or those named; some minutes a mechanism")
+    options = parser.parse_args(arguments)
     if options.validate:
         return _validate(options)
     if options.results:
@@ -40,10 +58,9 @@ def advise(arguments):
 
 
 def _validate(options):
-    given = [name for name in OF_A_QUESTION if getattr(options, name.strip("-").replace("-", "_"))]
-    if given:
-        raise StudyError(f"--validate asks questions of its own: {', '.join(given)} "
-                         f"do{'es' * (len(given) == 1)} not go with it, only --only and --results do")
+    if given := [name for name in OF_A_QUESTION if getattr(options, name.strip("-").replace("-", "_"))]:
+        raise StudyError(f"--validate asks questions of its own: {', '.join(given)} do{'es' * (len(given) == 1)} not go with it, only --only and "
+                         "--results do")
     questions(options.scene)  # before anything is written
     results = options.results or DEFAULT / "validation"
     need_own(results, BEGUN)
@@ -65,6 +82,7 @@ def ask(options, folder=None):
     folder = folder or options.results or DEFAULT / folder_of(scene, inputs, names, digest(ROOT / program_of()))
     writable(folder)
     spent = time.monotonic() - began
+    say = partial(print, file=sys.stderr, flush=True)  # standard output may be JSON
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
         clock = {"budget": question.budget, "began": time.monotonic() - spent}  # without the time of waiting
         run = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us, options.json, **clock)
@@ -75,46 +93,10 @@ def ask(options, folder=None):
     return answer
 
 
-def say(text):
-    """On standard error: standard output may be JSON."""
-    print(text, file=sys.stderr, flush=True)
-
-
 def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False, **clock):
     """The Runner of a scene and its records in `folder`; `clock`: `budget` and `began`."""
-    pairs = profiles.load("quick", []).blas
-    kept = open_shelf(folder, "advise", context_of(control(known, pairs)), names, question=inputs)
-    lab = ToolLab(kept, "advise", "runs", quiet=quiet)
-    return Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us, **clock)
-
-
-def _parser():
-    parser = Parser(prog="study/advise", description="Which implementation, step and settings "
-                    "simulate SCENE with positions as accurate as E, in the least time? Runs pilots of "
-                    "that very scene; takes about a minute. Exit status 1: no setting is good enough.")
-    parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
-                        "with --validate kinds of its list and any scenes")
-    parser.add_argument("--error", type=positive, metavar="E",
-                        help="largest position error of any point over the whole time, m")
-    parser.add_argument("--deadline-us", type=positive, metavar="D",
-                        help="99 %% of the steps must be done within D microseconds")
-    parser.add_argument("--step", type=seconds, metavar="S",
-                        help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed frame. If a frame "
-                        "takes k steps, give a k-th of it (1/240 for four of them), and a k-th of its time as --deadline-us")
-    parser.add_argument("--duration", type=positive, metavar="T",
-                        help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--budget", type=positive, metavar="S",
-                        help=f"seconds for all pilots and timings ({BUDGET:g}). The answer says what did not fit")
-    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
-    parser.add_argument("--results", type=directory, metavar="DIR",
-                        help="where raw files are kept (results/local/advice/, one folder a question); with --validate its "
-                        "tables and page, too")
-    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
-    parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
-                        "search on families of mechanisms and standard problems, or those named; some minutes a mechanism")
-    return parser
+    lab, contenders = open_shelf(folder, "advise", known, names, names, quiet, question=inputs)
+    return Runner(lab, inputs["scene"], variables, contenders, deadline_us, **clock)
 
 
 def seconds(text):
@@ -127,11 +109,10 @@ def _need_possible(question):
     """StudyError if a step is given in which there is nothing to advise on."""
     least, most = question.duration / MOST_STEPS, question.duration / LEAST_STEPS
     if question.step and not least <= question.step <= most:
-        raise StudyError(f"--step {question.step:g}: a run of {question.duration:g} s has {LEAST_STEPS} to "
-                         f"{MOST_STEPS:g} steps, so from {least:g} to {most:g} s each")
+        raise StudyError(f"--step {question.step:g}: a run of {question.duration:g} s has {LEAST_STEPS} to {MOST_STEPS:g} steps, so from {least:g} "
+                         f"to {most:g} s each")
     if question.step and question.deadline_us and question.deadline_us > 1.000001e6 * question.step:
-        raise StudyError(f"--deadline-us {question.deadline_us:g}: more than the step itself, "
-                         f"{1e6 * question.step:g} us, is not in real time")
+        raise StudyError(f"--deadline-us {question.deadline_us:g}: more than the step itself, {1e6 * question.step:g} us, is not in real time")
 
 
 def duration(scene, asked, described):

@@ -30,9 +30,8 @@ def find_speeds(advice, settings, run):
 
 
 def named(described, variants, settings):
-    """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those
-    near the fastest by the rule of `mbs describe`, who is sparse and unknown to it, as it was fitted to general code, and who
-    else is needed for a setting; all without a rule."""
+    """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those near the fastest by the
+    rule of `mbs describe`, who is sparse and unknown to it, and who else is needed for a setting; all without a rule."""
     foreseen = _foreseen(described, variants)
     if not foreseen:
         return dict.fromkeys(variants, math.nan), {}
@@ -50,8 +49,7 @@ def named(described, variants, settings):
 
 
 def probe(variants, described, run, step, duration):
-    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the form that the rule is of;
-    where the step is too long for it, times are those foreseen."""
+    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the rule's form; foreseen if the step is too long."""
     rows, speeds, foreseen = [], {}, _foreseen(described, variants)
     form = Setting(described["scheme"]["take"])
     for name in variants:

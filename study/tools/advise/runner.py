@@ -17,7 +17,6 @@ EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact
 VALUES, JUDGED = 2e5, 100
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 QUICK = 200  # steps of a run for its time
-OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
 
 
 def scene_name(text):
@@ -50,8 +49,8 @@ def advised(command, library, duration):
 
 
 class Runner:
-    """Runs simulations of one scene one after the other, and keeps a row of each. It has the clock of the question: `budget`,
-    s, which began at `began` (of time.monotonic). `truth`: where it is known, what a run's series is held against (truth.py)."""
+    """Runs simulations of one scene one after the other, and keeps a row of each. It has the clock of the question: `budget`, s, which began
+    at `began` (of time.monotonic). `truth`: where it is known, what a run's series is held against (truth.py)."""
 
     def __init__(self, lab, scene, variables, contenders, deadline_us=None, budget=math.inf, began=None):
         self.lab, self.scene, self.variables, self.truth = lab, scene, variables, None
@@ -62,25 +61,26 @@ class Runner:
         self.automatic = {}  # {(scheme, step): the automatic tolerance, m}
 
     def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
-        """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
-        or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
-        the steps of each one's least time over the repeats; the other times are those of the first repeat."""
+        """The row of a run. `checks`: EXACT or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the
+        mean over the steps of each one's least time over the repeats; the other times are those of the first repeat."""
         record, tolerance = self._tolerance(setting, variant, step) if setting.loosened else (None, None)
         if tolerance or not setting.loosened:  # else the row is that of the run which should have told it
             repeated = ("--repeats", repeats) if repeats > 1 and checks != HALVED else ()
-            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *self._checks(checks, duration / step)]
+            every = max(1, min(int(duration / step / JUDGED), int(duration / step * self.variables / VALUES)))
+            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *["--half-step"] * (checks == HALVED),
+                     *(("--judge-every", every) if checks else ())]
             record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
         if not setting.changes:
             self._learn(setting, step, found)
         times, least = found.get("step_us", {}), found.get("least_us") or {}
-        row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration,
-               "status": status, "reason": reason, "estimate": found.get("position_error_estimate"),
-               "exact": found.get("position_error_max"), "step_us": least.get("mean")}
-        row |= {column: times.get(name) for column, name in OF_TIMES.items()}
-        row |= {key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings")}
-        row |= {"seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
+        row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration, "status": status,
+               "reason": reason, "estimate": found.get("position_error_estimate"), "exact": found.get("position_error_max"),
+               "step_us": least.get("mean"), "step_us_median": times.get("median"), "step_us_p99": times.get("p99"),
+               "deadline_misses": times.get("deadline_misses"),
+               **{key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings")},
+               "seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
         if self.truth and checks == EXACT and record.done and status in FINISHED:
             row["exact"] = self.truth.error(record.series)
         self.rows.append(row)
@@ -107,20 +107,13 @@ class Runner:
         """Share of the time of all runs in which they had no processor: other programs had it."""
         return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
 
-    @property
-    def slowdown(self):
-        """How many times longer runs take for that."""
-        return 1.0 / (1.0 - self.waited)
-
-    def _checks(self, checks, steps):
-        every = max(1, min(int(steps / JUDGED), int(steps * self.variables / VALUES)))
-        return [*["--half-step"] * (checks == HALVED), "--judge-every", every] if checks else []
+    slowdown = property(lambda self: 1.0 / (1.0 - self.waited))  # how many times longer runs take for that
 
     def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}
         known, began = len(self.lab.names), time.monotonic()
-        record = self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), (
-            "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3), **seen))
+        words = ("--step", f"{step:g}", "--duration", f"{duration:g}", *words)
+        record = self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), words, kind, timed=True, seconds=round(seconds, 3), **seen))
         if len(self.lab.names) > known:
             if time.monotonic() - began > 0.9 * record.seconds:
                 self.wall, self.processor = self.wall + record.seconds, self.processor + record.machine.get("cpu_s", 0.0)

@@ -23,13 +23,10 @@ class Found:
     quick_us: float = math.nan   # of a step, in a short run before any pilot
     chosen_us: float = math.nan  # of the chosen step
 
-    @property
-    def open(self):
-        return self.chosen is None and not self.reason
+    open = property(lambda self: self.chosen is None and not self.reason)
 
     def step_us(self):
-        """Time of a step: of the run at the chosen step, else the median at the shortest one that was tried, else of the
-        short run."""
+        """Time of a step: of the run at the chosen step, else the median at the shortest one that was tried, else of the short run."""
         times = [pilot for pilot in self.pilots if pilot.step_us > 0]
         pilot = min(times, key=lambda pilot: pilot.step).step_us if times else self.quick_us
         return pilot if math.isnan(self.chosen_us) else self.chosen_us
@@ -37,12 +34,11 @@ class Found:
     def rung(self):
         """The longest step that was run and is not longer than the chosen one; the shortest without."""
         steps = [pilot.step for pilot in self.pilots]
-        return max([step for step in steps if self.chosen and step <= self.chosen * 1.001] or [min(steps)])
+        return max((step for step in steps if self.chosen and step <= self.chosen * 1.001), default=min(steps))
 
 
 class Search:
-    """`run(setting, step)` gives a Pilot, or None if no time is left for it; `quick(setting, step)` the time of a step
-    in a short run, us, or None."""
+    """`run(setting, step)` gives a Pilot, `quick(setting, step)` the time of a step in a short run, us; None if no time is left."""
 
     def __init__(self, settings, run, quick, *, error, duration, start, deadline_us=None, step=None):
         self.found = {setting: Found(setting) for setting in settings}
@@ -53,19 +49,13 @@ class Search:
 
     def search(self):
         """Pilots until every setting has a step, or a reason why it has none; {setting: Found}."""
-        while True:
-            best = self.best()
-            ready = [one for one in self.found.values() if one.open and self._ready(one, best)]
-            if not ready:
-                break
-            self._advance(min(ready, key=lambda one: self.promise(one) * (
-                1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)))
+        while ready := [one for one in self.found.values() if one.open and self._ready(one)]:
+            self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)))
         for one in self.found.values():
             if one.open and one.quick_us == math.inf:
                 one.reason = "its steps take far longer than those of other settings"
             elif one.open:
-                one.reason = (f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest "
-                              f"{best / 1e3:.3g}")
+                one.reason = f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest {self.best() / 1e3:.3g}"
         return self.found
 
     def best(self):
@@ -92,8 +82,8 @@ class Search:
         return one.quick_us / at
 
     def _tells(self, one):
-        """Whether a setting's pilots tell which step it needs. Where one was lost, estimates must count: a scheme that is lost at a
-        singular position may lose it again at the next step, where a change of it passes."""
+        """Whether a setting's pilots tell which step it needs. Where one was lost, estimates must count: a scheme that is lost at a singular
+        position may lose it again at the next step, where a change of it passes."""
         valid = [pilot for pilot in one.pilots if pilot.valid] if one else []
         return bool(valid) and (len(valid) == len(one.pilots) or any(counts(pilot.step, valid, self.error) for pilot in valid))
 
@@ -110,14 +100,13 @@ class Search:
             return min(pilot.step for pilot in one.pilots) / 2
         finest = min(valid, key=lambda pilot: pilot.step)
         slope = local_order(finest.step, one.pilots, one.setting.order)
-        reached = max(finest.estimate, 1e-300)
-        return finest.step * min(AHEAD, (self.error / reached) ** (1 / slope))
+        return finest.step * min(AHEAD, (self.error / max(finest.estimate, 1e-300)) ** (1 / slope))
 
-    def _ready(self, one, best):
+    def _ready(self, one):
         parent = self.parent(one)
-        if parent and parent.open and self._ready(parent, best):
+        if parent and parent.open and self._ready(parent):
             return False  # the scheme itself first
-        return not self.promise(one) > (NEAR if self._tells(parent) else SCHEME) * best
+        return not self.promise(one) > (NEAR if self._tells(parent) else SCHEME) * self.best()
 
     def _advance(self, one):
         parent, order = self.parent(one), one.setting.order
@@ -149,9 +138,8 @@ class Search:
 
     def _settle(self, one, reason):
         """Nothing more is tried: the longest step that is known to be good enough, if any."""
-        good = [pilot.step for pilot in enough(one.pilots, self.error, one.setting.order)
-                if self.step in (None, pilot.step)]
-        self._end(one, good[0] if good else None, reason)
+        good = (pilot.step for pilot in enough(one.pilots, self.error, one.setting.order) if self.step in (None, pilot.step))
+        self._end(one, next(good, None), reason)
 
     def _end(self, one, chosen, reason):
         """Gives a setting its step, or the reason why it has none."""

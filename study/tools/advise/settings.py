@@ -11,26 +11,23 @@ OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(schem
 
 
 def catalogue():
-    """Scheme × projections × tolerance, a scheme's own before what changes it; of what else changes a step, what was the
-    fastest somewhere when all was tried (README.md)."""
+    """Scheme × projections × tolerance, a scheme's own first; of what else changes a step, what was the fastest somewhere (README.md)."""
     found = []
     for scheme in SCHEMES:
         for projections, tolerance in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED)):
-            changes = (("projections", projections),) * (projections != "both") + (
-                (("tolerance", tolerance),) * (tolerance != "auto"))
-            found.append(Setting(scheme, changes))
+            asked = {"projections": projections, "tolerance": tolerance}
+            found.append(Setting(scheme, tuple(one for one in asked.items() if one[1] not in ("both", "auto"))))
     return [*found, *OTHERS]
 
 
 def fits(setting, scene):
     """Why a scheme cannot be used for a scene (`mbs describe --json`), or ""."""
     terms = scene["terms"]
-    if setting.scheme.startswith(("rattle", "multistep")):
-        if (terms["driven_constraints"] or terms["factors"] or scene["driven_points"] or scene["driven_vectors"]):
-            return "not for scenes with drivers"
-        if terms["damping"]:
-            return "not for scenes with dampers"
-    return ""
+    if not setting.scheme.startswith(("rattle", "multistep")):
+        return ""
+    if terms["driven_constraints"] or terms["factors"] or scene["driven_points"] or scene["driven_vectors"]:
+        return "not for scenes with drivers"
+    return "not for scenes with dampers" if terms["damping"] else ""
 
 
 def serving(setting, variants):

@@ -23,11 +23,9 @@ class Candidate:
     reason: str = ""       # why it dropped out
     slower: bool = False   # than others as they were then: that is why
     late_us: float = 0.0   # its 99th percentile, where that is why
-    kept: bool = False     # it is timed in every round, however slow
+    kept: bool = field(default=False, compare=False)  # it is timed in every round, however slow
 
-    @property
-    def out(self):
-        return bool(self.reason)
+    out = property(lambda self: bool(self.reason))
 
     def us_per_second(self):
         """(median, least, most) over the rounds of the time of a simulated second."""
@@ -37,9 +35,6 @@ class Candidate:
     def p99_us(self):
         """Median over the rounds."""
         return median(row["step_us_p99"] for row in self.rows) if self.rows else math.inf
-
-    def drop(self, reason):
-        self.reason = reason
 
     def drop_late(self, p99_us, when=""):
         self.reason, self.late_us = f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us
@@ -52,9 +47,8 @@ def stretch(duration, us_per_second, seconds, least):
 
 
 def race(candidates, run, left, deadline_us=None, shorter=False):
-    """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether
-    there was time for all; slow ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot
-    covered less of the motion, gets a shorter step."""
+    """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether there was time for all; slow
+    ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot covered less of the motion, gets a shorter step."""
     for number in range(1, ROUNDS + TIE_BREAKS + 1):
         running = _running(candidates)
         if number > ROUNDS and (len(running) < 2 or decided(running)):
@@ -73,7 +67,7 @@ def race(candidates, run, left, deadline_us=None, shorter=False):
             if row["status"] in FINISHED:
                 one.rows.append(row)
             else:  # a stretch may end lost where the whole run is not: another candidate, then
-                one.drop(f"{row['status']} while it was timed: {row['reason']}")
+                one.reason = f"{row['status']} while it was timed: {row['reason']}"
             if deadline_us and one.rows and one.p99_us() > 2 * deadline_us:
                 one.drop_late(one.p99_us())
         drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
@@ -85,9 +79,8 @@ def _running(candidates):
 
 
 def drop_slow(candidates, factor, number):
-    running = _running(candidates)
-    best = min((one.us_per_second()[0] for one in running), default=math.inf)
-    for one in running:
+    best = min((one.us_per_second()[0] for one in _running(candidates)), default=math.inf)
+    for one in _running(candidates):
         ratio = one.us_per_second()[0] / best
         if ratio > factor and not one.kept:
             one.reason, one.slower = f"{ratio:.2f} times slower after round {number}", True

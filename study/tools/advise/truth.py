@@ -17,16 +17,14 @@ SCHEMES = ("saddle-point", "penalty")
 
 
 class Truth:
-    """`uncertainty`, m: by how much the two schemes differ at most, or cubics between the instants are off; infinite if there is no
-    reference."""
+    """`uncertainty`, m: by how much the two schemes differ at most, or cubics between the instants are off; infinite without a reference."""
 
     def __init__(self, lab, scene, described, contender, duration, enough):
         self.duration, self.uncertainty = duration, math.inf
         axes = "xyz"[:described["dimension"]]
         points = [one["name"] for one in described["elements"]["points"] if one["kind"] in MOVING]
         points = points[::max(1, len(points) // POINTS)]
-        self.columns = tuple(f"{point}.{axis}" for point in points for axis in axes)
-        self.speeds = tuple(f"{point}.v{axis}" for point in points for axis in axes)
+        self.columns, self.speeds = (tuple(f"{point}.{v}{axis}" for point in points for axis in axes) for v in ("", "v"))
         self.shape = (len(points), len(axes))
         dense, halving = DENSE, 0
         while halving < HALVINGS and dense <= DENSEST:
@@ -58,15 +56,15 @@ class Truth:
 
     def _extrapolated(self, lab, scene, contender, scheme, dense, every):
         """(t, q, v) by steps of duration/dense/every and half of that, to fourth order; None where a run was lost."""
-        cells = [Cell("simulate", scene, (contender,), (
-            "--step", f"{self.duration / dense / more:.12g}", "--duration", f"{self.duration:g}", "--scheme", scheme),
-            "reference", seconds=600, keep=self.columns + self.speeds, every=more) for more in (every, 2 * every)]
-        coarse, fine = lab.run(cells)
-        if any(of_run(one)[0] not in FINISHED for one in (coarse, fine)):
+        words = ("--duration", f"{self.duration:g}", "--scheme", scheme)
+        found = lab.run([Cell("simulate", scene, (contender,), ("--step", f"{self.duration / dense / more:.12g}", *words), "reference", seconds=600,
+                              keep=self.columns + self.speeds, every=more) for more in (every, 2 * every)])
+        if any(of_run(one)[0] not in FINISHED for one in found):
             return None
-        length = min(len(coarse.series["t"]), len(fine.series["t"]))
-        q, v = ([self._of(one.series, names)[:length] for one in (coarse, fine)] for names in (self.columns, self.speeds))
-        return (numpy.array(fine.series["t"])[:length], *((4 * one[1] - one[0]) / 3 for one in (q, v)))
+        length = min(len(one.series["t"]) for one in found)
+        coarse, fine = ({name: values[:length] for name, values in one.series.items()} for one in found)
+        q, v = ((4 * self._of(fine, names) - self._of(coarse, names)) / 3 for names in (self.columns, self.speeds))
+        return numpy.array(fine["t"]), q, v
 
     @staticmethod
     def _of(series, columns):

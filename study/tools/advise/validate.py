@@ -17,12 +17,11 @@ from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
 SCENES = {  # (kind, s): scenes
-    ("four-bar", 5): ("four-bar:1", "four-bar:2", "four-bar:10", "four-bar:40"),
-    ("ladder", 4): ("ladder:12", "ladder:40"), ("grid", 3): ("grid:5x5", "grid:10x10"), ("truss", 3): ("truss:3", "truss:8"),
-    ("vehicle", 4): ("vehicle:8", "vehicle:40"), ("robot", 4): ("robot:8", "robot:30"),
-    ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"), ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"),
-    ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"), ("star", 4): ("star:10", "star:100"),
-    ("loop", 4): ("loop:20", "loop:60"), ("chain", 2): ("chain:20", "chain:60"),
+    ("four-bar", 5): ("four-bar:1", "four-bar:2", "four-bar:10", "four-bar:40"), ("ladder", 4): ("ladder:12", "ladder:40"),
+    ("grid", 3): ("grid:5x5", "grid:10x10"), ("truss", 3): ("truss:3", "truss:8"), ("vehicle", 4): ("vehicle:8", "vehicle:40"),
+    ("robot", 4): ("robot:8", "robot:30"), ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"),
+    ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"), ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"),
+    ("star", 4): ("star:10", "star:100"), ("loop", 4): ("loop:20", "loop:60"), ("chain", 2): ("chain:20", "chain:60"),
     ("standard problems", 5): tuple(f"{PROBLEMS}/{name}.json" for name in (
         "a01_pendulum", "a04_bricard", "a05_governor", "slider_crank", "spatial_slider_crank", "half_car", "double_four_bar")),
     ("standard problems", 0.03): (f"{PROBLEMS}/a03_andrews.json",),
@@ -72,17 +71,14 @@ def validate(options, ask, runner_of, results):
 
 def questions(asked):
     """[(kind, scene, s)]: all of SCENES, or the kinds and scenes of it that are asked for, and any other scene."""
-    listed_here = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes]
-    known = {name for kind, scene, _ in listed_here for name in (kind, scene)}
-    found = [one for one in listed_here if not asked or one[0] in asked or one[1] in asked]
-    for scene in (scene_name(text) for text in asked if text not in known):
-        found.append((OTHERS, scene, min(OTHERS_DURATION, describe(scene)["drivers_end"] or OTHERS_DURATION)))
-    return found
+    known = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes]
+    others = [scene_name(text) for text in asked if not any(text in one for one in known)]
+    return [one for one in known if not asked or one[0] in asked or one[1] in asked] + [
+        (OTHERS, scene, min(OTHERS_DURATION, describe(scene)["drivers_end"] or OTHERS_DURATION)) for scene in others]
 
 
 def _reference(described, variants, run):
-    """Who simulates the reference: the fastest by the rule that serves both schemes, and the scene, of which the rule knows
-    nothing."""
+    """Who simulates the reference: the fastest by the rule that serves both schemes, and the scene, of which the rule knows nothing."""
     form = Setting("saddle-point")
     foreseen = {one["implementation"]: one["step_us"] for one in described["recommendation"]}
     for name in sorted(serving(form, variants), key=lambda name: foreseen.get(name, math.inf)):
@@ -101,23 +97,18 @@ def _compare(error, duration, answer, run, variants, found, speeds):
                        for name, us in served.items() if us <= SLOWER * min(served.values())]
     advised = told and timing.Candidate(settings[told["setting"]], told["implementation"], told["step"], kept=True)
     if advised:
-        candidates = [one for one in candidates if _same(one) != _same(advised)] + [advised]
+        candidates = [one for one in candidates if one != advised] + [advised]
 
     def timed(one, number):
         run.tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.name}")
         return run(f"timing-{error:g}/round{number}", one.setting, one.implementation, one.step, duration, 60)
     timing.race(candidates, timed, lambda: ROUNDS_AT_MOST)
     held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, EXACT, 1)
-    best = min((one for one in candidates if one.rows and (one is advised or not one.out)), default=None,
-               key=lambda one: one.us_per_second()[0])
+    best = min((one for one in candidates if one.rows and (one is advised or not one.out)), default=None, key=lambda one: one.us_per_second()[0])
     return {"met": answer["met"], "estimate": told and told["error"]["estimate"], "exact": held and held["exact"],
             "meets": bool(held and meets(held, error)), "seconds": answer["seconds"], "others": answer["waited"],
             "why_not": answer["why_not"] or "", **_columns("advised", advised), **_columns("best", best),
             "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
-
-
-def _same(one):
-    return one.setting, one.implementation, one.step
 
 
 def _columns(prefix, one):
@@ -133,8 +124,8 @@ def everything():
 
 
 def search(run, variants, described, duration, errors):
-    """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
-    A setting's steps end where two in succession meet the smallest error or where they cost too much."""
+    """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}. A setting's steps end where two
+    in succession meet the smallest error or where they cost too much."""
     longest = duration / LEAST_STEPS
     _, speeds = probe(variants, described, run, longest / 8, duration)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error

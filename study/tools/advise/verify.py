@@ -15,14 +15,12 @@ HALVES = 6  # of the duration, to find for how long an error can be kept
 
 
 def verify(advice, run):
-    """Whole runs of the fastest candidate, until one is as accurate as asked: `advice.chosen`, its row
-    `advice.verified`, and that of the line as it is advised, without a check. `run` is a Runner."""
+    """Whole runs of the fastest candidate, until one is as accurate as asked; then `advice.outcome`, the line as advised, without a check."""
     question = advice.question
     for _ in range(VERIFICATIONS):
-        order = timing.ranked(advice.candidates, question.deadline_us)
-        if not order:
+        one = next(iter(timing.ranked(advice.candidates, question.deadline_us)), None)
+        if not one:
             return
-        one = order[0]
         seconds = max(run.left(), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
         duration = _affordable(one, question, seconds / run.slowdown)
         if not duration:
@@ -40,28 +38,25 @@ def verify(advice, run):
         advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
         if advice.outcome["status"] not in FINISHED:
             row["refused"] = f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}"
-            one.drop(row["refused"])
+            one.reason = row["refused"]
             continue
         advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
         if duration < question.duration:
-            advice.cut_short.append(
-                f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
-                f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
+            advice.cut_short.append(f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
+                                    f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
         return
 
 
 def _affordable(one, question, seconds):
     """The simulated time that a verification can cover, s; 0 if that is not worth it."""
-    expected = 4e-6 * one.us_per_second()[0] * question.duration  # 3 for the check, 1 for the line itself
-    if expected <= seconds:
+    share = seconds / (4e-6 * one.us_per_second()[0] * question.duration)  # 3 for the check, 1 for the line itself
+    if share >= 1:
         return question.duration
-    share = seconds / expected
     return float(f"{share * question.duration:.2g}") if share > 0.05 and share * question.duration > 20 * one.step else 0.0
 
 
 def _at_least(row, advice):
-    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two runs
-    that gave it were wrong alike."""
+    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two runs of it were wrong alike."""
     if row["estimate"] is None or advice.pilot_duration < row["duration"]:
         return row["estimate"]
     found = next(found for setting, found in advice.found.items() if setting.name == row["setting"])
@@ -87,14 +82,13 @@ def _excess(row, advice, one):
 
 
 def _reconsider(one, row, advice):
-    """What follows from a whole run that was not good enough: a shorter step for all candidates of its
-    setting, their time scaled, or one candidate less."""
+    """What follows from a whole run that was not good enough: a shorter step for all candidates of its setting, or one candidate less."""
     for other in advice.candidates:
         if other.slower and other.rows:  # what beat it has become slower itself
             other.slower, other.reason = False, ""
     question, found = advice.question, advice.found[one.setting]
     if row["status"] not in FINISHED or row["estimate"] is None:
-        one.drop(f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}")
+        one.reason = f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}"
         return
     excess = _excess(row, advice, one)
     if excess <= 1:
@@ -106,7 +100,7 @@ def _reconsider(one, row, advice):
         step = found.rung() if failed > 2 else max(step, found.rung())
     for other in (other for other in advice.candidates if other.setting == one.setting):
         if question.step or failed > 4 or step < one.step / 8:
-            other.drop(f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s")
+            other.reason = f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s"
         else:
             other.step = tidy(step, question.duration)
 
@@ -116,9 +110,7 @@ def expected_error(advice, one, row):
     estimate, pilots, order = row["estimate"], advice.found[one.setting].pilots, one.setting.order
     covered = advice.pilot_duration == row["duration"]  # else theirs are the errors of less motion
     high = most(one.step, estimate, pilots, order, advice.question.error) if covered else math.inf
-    if math.isinf(high):
-        high = by_order(one.step, estimate, pilots, order)
-    return apart(estimate, order), max(estimate, high)
+    return apart(estimate, order), max(estimate, high if math.isfinite(high) else by_order(one.step, estimate, pilots, order))
 
 
 def what_helps(advice, run):

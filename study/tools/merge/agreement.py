@@ -39,7 +39,7 @@ def unlike(first, other):
             return f"{one.folder} is no evidence: {why}"
         if any(str(context.get("dirty")).lower() != "false" for context in contexts(one).values()):
             return f"{one.folder} was measured from a tree with changes"
-    mine, its = contexts(first), contexts(other)
+    mine, its = ({path.name: context for path, context in contexts(one).items()} for one in (first, other))
     for name in [name for name in mine if name in its]:
         if differs := executor.differing(mine[name], its[name], ALIKE):
             return f"{other.folder} is of another build than {first.folder}: {differs[0]} is '{differs[2]}', not '{differs[1]}' ({name})"
@@ -47,9 +47,10 @@ def unlike(first, other):
 
 
 def contexts(studyset):
-    """{file: the context in it} of a set and of its environments."""
-    found = {"set.json": studyset.facts["context"]} | {path.name: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
-    return {name: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for name, one in found.items()}
+    """{path: the context in it} of a set and of its environments."""
+    found = {path: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
+    found = {studyset.folder / "set.json": studyset.facts["context"]} | found
+    return {path: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for path, one in found.items()}
 
 
 def compared(first, others):
@@ -76,10 +77,8 @@ def _map(studyset):
     tables = {name: schema.read_table(studyset.folder, "map", name) for name in ("tidy", "verification")}
     results = Results(tables, View(studyset.folder, "map"))
     for layer in LAYERS:
-        names = results.layer(layer)
         for scene, rows in results.timing.groupby("scene"):
-            ranking = results.rank(scene, names)
-            if ranking:
+            if ranking := results.rank(scene, results.layer(layer)):
                 yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking
 
 
@@ -98,8 +97,7 @@ def _families(studyset):
 
 @dataclass(frozen=True)
 class Agreement:
-    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be more than
-    5 % behind the fastest there."""
+    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
     question: Question
     machines: tuple
 
@@ -114,19 +112,12 @@ class Agreement:
         first, *others = self.sets
         return [name for name in first if all(name in one for one in others)]
 
-    @property
-    def winners(self):
-        return [one.winner for one in self.machines]
+    winners = property(lambda self: [one.winner for one in self.machines])
 
     @property
     def alike(self):
         """Whether each winner is as fast as the winner on every other machine."""
         return all(mine.winner in its.equivalent for mine in self.machines for its in self.machines)
-
-    @property
-    def decided(self):
-        """Whether the machines leave one alone."""
-        return len(self.common) == 1
 
     @property
     def worst(self):
@@ -142,15 +133,15 @@ class Agreement:
 
     @property
     def verdict(self):
-        return "decided" if self.decided else "several" if self.common else "differs"
+        """"decided" where the machines leave one alone."""
+        return {0: "differs", 1: "decided"}.get(len(self.common), "several")
 
 
 def agreements(sets, asked=questions):
     """Agreements on the questions that all sets answer; and how many only some of them have."""
     found = [asked(one) for one in sets]
     shared = [one for one in found[0] if all(one in other for other in found)]
-    everything = {one for other in found for one in other}
-    return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(everything) - len(shared)
+    return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(set().union(*found)) - len(shared)
 
 
 def components(agreed, machines):
@@ -171,20 +162,15 @@ def components(agreed, machines):
 
 
 def mechanisms(sets, agreed=None):
-    """Agreements on libraries on mechanisms at their own fill, one a mechanism: in the penalty form, or in the saddle-point form
-    where not all have that. `agreed`: all, if they are known."""
+    """Agreements on libraries, one a mechanism at its own fill: in the penalty form, or in the other if not all have that. `agreed`: all."""
     if agreed is None:
         agreed, _ = agreements(sets, lambda one: dict(_families(one)))
-    found = {}
-    for one in sorted(agreed, key=lambda one: one.question.form):
-        if one.question.part == "families" and "fill=" not in one.question.scene:
-            found.setdefault(one.question.scene, one)
-    return list(found.values())
+    return list({one.question.scene: one for one in sorted(agreed, key=lambda one: one.question.form, reverse=True)  # the penalty form is the last
+                 if one.question.part == "families" and "fill=" not in one.question.scene}.values())
 
 
 def shares(agreed):
-    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all
-    of them, none."""
+    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all, none."""
     same = sum(len(set(one.winners)) == 1 for one in agreed)
     differ = sum(one.verdict == "differs" for one in agreed)
     return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ, "differ": differ}
@@ -194,7 +180,7 @@ def held(agreed, fresh):
     """{layer: (decided cells that a further set answers, of these with its winner in their set)}."""
     known, found = questions(fresh), {}
     for one in agreed:
-        if one.decided and one.question in known:
+        if one.verdict == "decided" and one.question in known:
             cells, inner = found.get(one.question.layer, (0, 0))
             found[one.question.layer] = (cells + 1, inner + (known[one.question].winner in one.common))
     return found

@@ -24,7 +24,7 @@ def merge(arguments):
         raise StudyError("needs two different sets or more")
     sets = [opened(folder) for folder in options.sets]
     fresh = opened(options.fresh) if options.fresh else None
-    for one in (*sets, *([fresh] if fresh else [])):
+    for one in filter(None, (*sets, fresh)):
         need_alike(sets[0], one, options.other_builds)
     if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
         raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
@@ -47,9 +47,8 @@ def merge(arguments):
         spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(agreement.mechanisms(sets, agreed)),
         claims=machine.claims(sets)))
     for layer, count in counts.items():
-        total = sum(count.values())
-        print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "
-              f"{count['differs']} differ by machine")
+        print(f"{agreement.LAYERS[layer]}: {sum(count.values())} common cells, {count['decided']} with one winner everywhere, "
+              f"{count['several']} with several, {count['differs']} differ by machine")
         print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
     for source, (percent, cells) in spread.items():
         print(f"{agreement.SOURCES[source]} alone make {percent:.2f} % of a ratio (standard deviation, {cells} cells)")

@@ -2,7 +2,8 @@
 import math
 import re
 
-from analysis.core.files import ROOT, digest, write_text
+from analysis.core.files import ROOT, digest
+from study.tools.fragments import rewritten
 from study.tools.paper.claims import claims
 
 FILE = ROOT / "paper" / "ARTIFACT.md"
@@ -17,11 +18,7 @@ def filled(text, known, claimed):
 
 def refresh(known, claimed):
     """Whether the file changed."""
-    before = FILE.read_text(encoding="utf-8")
-    after = filled(before, known, claimed)
-    if after != before:
-        write_text(FILE, after)
-    return after != before
+    return rewritten(FILE, lambda text: filled(text, known, claimed))
 
 
 def stale(known, claimed):

@@ -77,8 +77,8 @@ def _single(known):
 def _assembly(known):
     cells = known.tables("map")["cells"]
     scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
-    found = [one for scene in scenes for one in [known.results.ratio(scene, DENSE, HYBRID)] if one]
-    return (all(one.low > 1 for one in found) if found else None), (f"above 1; here {span([one.low for one in found])} at the lower ends" if found else "")
+    lows = [one.low for one in (known.results.ratio(scene, DENSE, HYBRID) for scene in scenes) if one]
+    return (min(lows) > 1, f"above 1; here {span(lows)} at the lower ends") if lows else (None, "")
 
 
 def _overtakes(known):
@@ -89,8 +89,7 @@ def _overtakes(known):
 
 
 def _phases(known):
-    rows = profiled(known)
-    rows = rows[rows.implementation == HYBRID]
+    rows = profiled(known).loc[lambda rows: rows.implementation == HYBRID]
     share = phases(rows.iloc[0])["factorization"] if len(rows) else None
     return (None, "") if share is None else (share > 0.5, f"more than half; here {percent(share)}")
 
@@ -105,11 +104,9 @@ def _together(known):
 
 
 def _machines(known):
-    if not known.compared:
-        return None, ""
     count = agreement.shares(agreement.mechanisms(known.compared, known.agreed))
-    return (10 * (count["all"] - count["differ"]) >= 9 * count["all"] if count["all"] else None), (
-        f"nine of ten; here {count['same'] + count['common']} of {count['all']}")
+    kept = count["all"] - count["differ"]
+    return (10 * kept >= 9 * count["all"] if count["all"] else None), f"nine of ten; here {kept} of {count['all']}" if known.compared else ""
 
 
 def _vector(known):
@@ -152,33 +149,28 @@ def _of_2008(holds, text):
 
 
 def _mixed(known):
-    rows = known.tables("accuracy")["pairs"]
-    rows = rows[(rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
+    rows = known.tables("accuracy")["pairs"].loc[lambda rows: (rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
     return _counted(rows.index.isin(pairs.gains(rows).index), lambda count, _: count == 0, "none; here {count} of {total}")
 
 
 def _compiled(known):
     rows = fastest_own(known.tables("families")["scenes"], known.registry)
-    ahead = int((rows.to_rival_high < 1).sum())
-    return (ahead == len(rows) if len(rows) else None), (f"time over the library's below 1; here {span(rows.to_rival)}, {ahead} of {len(rows)} shown"
-                                                         if len(rows) else "")
+    said = f"time over the library's below 1; here {span(rows.to_rival)}, {{count}} of {{total}} shown" if len(rows) else ""
+    return _counted(rows.to_rival_high < 1, eq, said)
 
 
 def _batches(known):
-    rows = known.tables("limit")["held"]
-    rows = rows[rows.what.str.contains("batches") & (rows.verdict != limits.NOT_MEASURED)]
+    rows = known.tables("limit")["held"].loc[lambda rows: rows.what.str.contains("batches") & (rows.verdict != limits.NOT_MEASURED)]
     kept = rows.verdict.isin([limits.HELD, limits.PARTLY])
     return (bool(kept.all()) if len(rows) else None), "; ".join(
         f"{row.sign} {number(row.bound)}; here {between(row.worst, row.low, row.high)}" for row in rows.itertuples())
 
 
 def _engines(known):
-    rows = known.tables("engines")["equal_error"]
-    rows = rows[(rows.side == "library") & rows.ratio.notna()]
+    rows = known.tables("engines")["equal_error"].loc[lambda rows: (rows.side == "library") & rows.ratio.notna()]
     return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons")
 
 
 def _quiet(known):
-    rows = known.tables("realtime")["machine"]
-    rows = rows[rows.status == "done"]
+    rows = known.tables("realtime")["machine"].loc[lambda rows: rows.status == "done"]
     return (bool(rows.lost.sum() == 0) if len(rows) else None), f"0; here {number(rows.lost.sum(), 5)} in {number(rows.seconds.sum())} s"

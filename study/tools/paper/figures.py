@@ -44,10 +44,8 @@ def own_fill(known):
 
 def size_and_fill(known):
     """The map, its legend below: cells are as wide as paper allows."""
-    results = known.results
-    figure = maps.fastest(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
-    legend = figure.axes[0].get_legend()
-    if legend:
+    figure = maps.fastest(known.results, Look(known.registry), "", known.results.layer("libraries"), letters=9, line=2.7)
+    if legend := figure.axes[0].get_legend():
         below(figure, legend, 3, 0.02, 7.2)
     return figure
 
@@ -55,12 +53,12 @@ def size_and_fill(known):
 def work(known):
     """Error against time of a four-bar, of libraries alone: the largest of which a front was timed."""
     tables = known.tables("accuracy")
-    rows = tables["points"][tables["points"].loops.notna() & tables["points"].fill_asked.isna() & tables["points"].library.fillna(False).astype(bool)]
+    rows = tables["points"].loc[lambda rows: rows.loops.notna() & rows.fill_asked.isna() & rows.library.fillna(False).astype(bool)]
     if rows.empty:
         return nothing(NOTHING)
     fronts = rows.groupby("loops").front_libraries.sum()
     mine = rows[rows.loops == max(fronts.index[fronts >= FRONT], default=rows.loops.max())]
-    won = tables["winners"][(tables["winners"].subject == mine.subject.iloc[0]) & tables["winners"].fill_asked.isna()]
+    won = tables["winners"].loc[lambda rows: (rows.subject == mine.subject.iloc[0]) & rows.fill_asked.isna()]
     figure = accuracy.work(mine, won, Look(known.registry), "largest of position, m", "")
     front, everyone, ratios, ratios_of_everyone = figure.axes
     for axes in (everyone, ratios_of_everyone):  # own code included
@@ -81,7 +79,7 @@ def work(known):
 def window(known):
     """Of the smallest, a middle and the largest size."""
     tables = known.tables("stability")
-    rows = tables["maps"][(tables["maps"].status != "dropped") & (tables["maps"].scheme == "penalty") & (tables["maps"].precision == "double")]
+    rows = tables["maps"].loc[lambda rows: (rows.status != "dropped") & (rows.scheme == "penalty") & (rows.precision == "double")]
     sizes = sorted(rows.loops.unique())
     if not sizes:
         return nothing(NOTHING)
@@ -91,7 +89,7 @@ def window(known):
 def steps(known):
     """Of the larger size, in the penalty form: the fastest of whom there are times."""
     tables = known.tables("realtime")
-    rows = tables["steps"][(tables["steps"].scheme == "penalty") & tables["steps"].median_us.notna()]
+    rows = tables["steps"].loc[lambda rows: (rows.scheme == "penalty") & rows.median_us.notna()]
     rows = rows[rows.loops == rows.loops.max()]
     return realtime.distributions(rows[rows.implementation.isin(realtime.order(rows)[:STEPS])] if len(rows) else rows, tables["machine"])
 
@@ -173,9 +171,8 @@ def _mechanisms(axes, mine, rows, chosen):
     for place in range(len(mine)):
         axes.axhline(place + 0.5, color="#e6e6e6", linewidth=0.6, zorder=0)
     axes.set(xlim=(0.93, END), ylim=(len(mine) - 0.4, -0.6), xlabel="time ÷ that of the fastest library")
-    marks = {True: "", False: " ?"}
-    said = mine.settled.fillna(False).astype(bool)
-    axes.set_yticks(range(len(mine)), [f"{row.scene} ({row.variables:.0f}){marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=7.0)
+    labels = [f"{row.scene} ({row.variables:.0f}){'' if said else ' ?'}" for row, said in zip(mine.itertuples(), mine.settled.fillna(False))]
+    axes.set_yticks(range(len(mine)), labels, fontsize=7.0)
 
 
 def fit(figure, height=None, machine=""):

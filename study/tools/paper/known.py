@@ -1,38 +1,25 @@
 # What the paper is built from: the tables of one set, and the other stored sets.
 import importlib
-from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
+from analysis.core import schema
 from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
 from analysis.map.results import of
 from study.tools.merge import agreement, machine
 
 
-class Tables(dict):
-    """{table: DataFrame} of a part of a set, each read when it is asked for; empty where the set lacks it."""
-
-    def __init__(self, folder, part):
-        super().__init__()
-        self.folder, self.part = folder, part
-
-    def __missing__(self, name):
-        self[name] = machine.table(self.folder, self.part, name)
-        return self[name]
-
-
-@dataclass(frozen=True)
 class Known(Folder):
-    _tables: dict = field(default_factory=dict)
-
+    @cache
     def tables(self, part):
-        return self._tables.setdefault(part, Tables(self.folder, part))
+        """{table: DataFrame} of a part of a set; empty where the set lacks it."""
+        return {name: machine.table(self.folder, part, name) for name in schema.of_part(part)}
 
-    def view(self, part="map"):
+    def view(self, part):
         return View(self.folder, part)
 
     def said(self, part):
-        """The part's own answers, one text."""
+        """Texts of the part's own answers."""
         module = importlib.import_module(f"analysis.{part}.sentences")
         return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
 
@@ -51,18 +38,14 @@ class Known(Folder):
         """The sets that processors are compared by: this one and those of its build, or, without any, sets of another build."""
         return agreement.compared(self, self.stored)
 
-    @property
-    def together(self):
-        """Whether this set is one of those that are compared."""
-        return any(one is self for one in self.compared)
+    together = property(lambda self: self in self.compared)
 
     @property
     def sets(self):
         """All that the paper is of: this one, and those beside it that are compared."""
-        return [self, *(one for one in self.compared if one is not self)]
+        return [self, *(one for one in self.compared if one != self)]
 
     @cached_property
     def agreed(self):
         """What the compared ones say together of libraries."""
-        found = agreement.agreements(self.compared)[0] if self.compared else []
-        return [one for one in found if one.question.layer == "libraries"]
+        return [one for one in agreement.agreements(self.compared)[0] if one.question.layer == "libraries"] if self.compared else []

@@ -1,20 +1,18 @@
-# Every number of the paper by name, each a query on a table of the set, with the records behind it.
-#
-# A query gets Known and gives Number or None: then the paper prints "not measured", as it does for a text that says nothing.
+# Every number of the paper by name, each a query on a table of the set, with the records behind it. A query gets Known and gives Number or
+# None: then the paper prints "not measured", as it does for a text that says nothing.
 import math
 from collections import defaultdict
 from dataclasses import dataclass
 
-import yaml
 from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
-from analysis.core.files import ROOT
 from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
+from study.core import profile as profiles
 from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
@@ -33,8 +31,7 @@ class Number:
 def numbers(known):
     """{name: Number}"""
     found = {}
-    for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits,
-                  _minutes):
+    for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
         found |= {f"{query.__name__.lstrip('_')}.{name}": one for name, one in query(known).items()}
     return {name: one if one and one.text not in NOTHING else Number(NOT_MEASURED, one.table if one else "") for name, one in found.items()}
 
@@ -42,6 +39,11 @@ def numbers(known):
 def of_rows(text, table, rows):
     """A Number of rows of a table, which name their records; None if there are no rows. `text` may be a function of the rows."""
     return Number(str(text(rows) if callable(text) else text), table, _records(rows)) if len(rows) else None
+
+
+def each(table, rows, /, **texts):
+    """`of_rows` of each text."""
+    return {name: of_rows(text, table, rows) for name, text in texts.items()}
 
 
 def count(rows, among, table):
@@ -101,8 +103,8 @@ def _design(known):
     scenes, tried = known.tables("families")["scenes"], known.tables("tuning")["alternatives"]
     timed, table = tried[tried.status == "ok"], "tuning/alternatives"
     return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
-            "equal": Number(f"{100 * (timing.EQUIVALENT - 1):.0f} %", "analysis/core/timing.py"),
-            "confidence": Number(f"{100 * timing.CONFIDENCE:.0f} %", "analysis/core/timing.py"),
+            "equal": Number(percent(timing.EQUIVALENT - 1), "analysis/core/timing.py"),
+            "confidence": Number(percent(timing.CONFIDENCE), "analysis/core/timing.py"),
             "processes": of_rows(lambda rows: span(rows.processes), "families/scenes", scenes[scenes.processes.notna()]),
             "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
             "slower": count(timed[timed.low > 1], timed, table), "faster": count(timed[timed.high < 1], timed, table),
@@ -166,15 +168,12 @@ def real(known):
     leaders = led(rows)
     leader, single = next(iter(leaders), ""), next(iter(lost), "")
     taken = scenes[(scenes.implementation == single) & scenes.scene.isin([*lost.get(single, {}).keys()])]
-    found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
-             "most": number(rows.variables.max(), 5), "said": rows.settled.fillna(False).sum(),
-             "margin": number(rows.margin.median()), "leader": leader, "leads": leaders.get(leader), "shares": shares(leaders)}
-    of_saddle = {"saddle": shares(led(saddle)), "saddle_of": len(saddle)}
-    of_single = {"single": single, "single_on": lambda _: len(lost[single]), "mean": lambda _: number(gmean(lost[single])),
-                 "worst": lambda _: number(lost[single].max()), "where": lambda _: lost[single].idxmax()}
-    return {name: of_rows(text, table, chosen) for texts, table, chosen in (
-        (found, "families/winners", rows), (of_saddle, "families/winners", saddle), (of_single, "families/scenes", taken))
-        for name, text in texts.items()}
+    return (each("families/winners", rows, mechanisms=len(rows), families=rows.family.nunique(), least=number(rows.variables.min(), 5),
+                 most=number(rows.variables.max(), 5), said=rows.settled.fillna(False).sum(), margin=number(rows.margin.median()), leader=leader,
+                 leads=leaders.get(leader), shares=shares(leaders))
+            | each("families/winners", saddle, saddle=shares(led(saddle)), saddle_of=len(saddle))
+            | each("families/scenes", taken, single=single, single_on=lambda _: len(lost[single]), mean=lambda _: number(gmean(lost[single])),
+                   worst=lambda _: number(lost[single].max()), where=lambda _: lost[single].idxmax()))
 
 
 def shares(counts):
@@ -183,16 +182,14 @@ def shares(counts):
 
 
 def _size(known):
-    results, cells = known.results, known.tables("map")["cells"]
-    own_fill = cells[(cells.layer == "libraries") & cells.fill_asked.isna()]
-    groups = summary.by_size(results, results.layer("libraries"))
-    return {"outcome": of_rows(" ".join(map_sentences.by_outcome(groups)), "map/cells", own_fill),
-            "least": of_rows(number(own_fill.variables.min(), 5), "map/cells", own_fill),
-            "most": of_rows(number(own_fill.variables.max(), 5), "map/cells", own_fill)}
+    rows = known.tables("map")["cells"].loc[lambda rows: (rows.layer == "libraries") & rows.fill_asked.isna()]
+    groups = summary.by_size(known.results, known.results.layer("libraries"))
+    return each("map/cells", rows, outcome=" ".join(map_sentences.by_outcome(groups)), least=number(rows.variables.min(), 5),
+                most=number(rows.variables.max(), 5))
 
 
 def _fill(known):
-    results, cells = known.results, known.tables("map")["cells"]
+    cells = known.tables("map")["cells"]
     rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
     filled = rows[rows.fill_asked.notna()]
     hybrid = filled[filled.equivalent.str.contains(HYBRID.split("/")[0])]
@@ -205,16 +202,14 @@ def _fill(known):
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
         mine = timed[timed.implementation == variant]
         found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
-    both = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
+    both = {scene: one.value for scene in filled.scene for one in [known.results.ratio(scene, DENSE, HYBRID)] if one}
     return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed),
-                    "faster": of_rows(lambda _: span([one.value for one in both.values()]), "map/tidy", filled[filled.scene.isin(both)])}
+                    "faster": of_rows(lambda _: span(both.values()), "map/tidy", filled[filled.scene.isin(both)])}
 
 
 def profiled(known):
-    """Rows of steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same
-    factorization were."""
-    rows = known.tables("limit")["steps"]
-    rows = rows[(rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
+    """Steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same factorization were."""
+    rows = known.tables("limit")["steps"].loc[lambda rows: (rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
     sizes = [size for size, mine in rows.groupby("variables") if {DENSE, HYBRID} <= set(mine.implementation)]
     return rows[rows.variables == max(sizes)] if sizes else rows[:0]
 
@@ -229,29 +224,24 @@ def _claims(known):
     table = known.tables("map")["claims"]
     by_id = ledger.by_id(table)
     found = {verdict: [name for name, (one, _) in by_id.items() if one == verdict] for verdict in ledger.VERDICTS}
-    return {"all": of_rows(len(by_id), "map/claims", table), "rows": of_rows(len(table), "map/claims", table),
-            "counts": of_rows(", ".join(f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names),
-                              "map/claims", table),
-            "told": of_rows(ledger.told(table), "map/claims", table)}
+    counts = (f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names)
+    return each("map/claims", table, all=len(by_id), rows=len(table), counts=", ".join(counts), told=ledger.told(table))
 
 
 def _price(known):
     whole = [row for row in summary.prices(known.results, known.results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
     first = whole[0] if whole else defaultdict(str)
-    rows = known.tables("map")["cells"]
-    rows = rows[(rows.layer == "libraries") & (rows.winner != "")]
-    return {name: of_rows(text, "map/tidy", rows) for name, text in (("single", first["implementation"]), ("mean", number(first["mean"])),
-                                                                     ("worst", number(first["worst"])), ("cells", first["of"]))}
+    rows = known.tables("map")["cells"].loc[lambda rows: (rows.layer == "libraries") & (rows.winner != "")]
+    return each("map/tidy", rows, single=first["implementation"], mean=number(first["mean"]), worst=number(first["worst"]), cells=first["of"])
 
 
 def _rule(known):
     held, defaults = known.tables("families")["held"], known.tables("families")["defaults"]
     one = rules.summary(held) if len(held) else defaultdict(float)
     unknown = f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else ""
-    found = {"mean": percent(one["mean_loss"], 1), "worst": percent(one["worst_loss"]) + unknown, "within": percent(one["within"]),
-             "families": one["families"], "scenes": one["scenes"]}
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
-    return {name: of_rows(text, "families/held", held) for name, text in found.items()} | {
+    return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
+                families=one["families"], scenes=one["scenes"]) | {
         "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
 
@@ -261,10 +251,9 @@ def _default(rows):
 
 
 def _error(known):
-    won = accuracy.met(accuracy.own_fill(known.tables("accuracy")["winners"]))
-    mine, pairs = won[won.layer == "libraries"], known.tables("accuracy")["pairs"]
+    won, pairs = accuracy.met(accuracy.own_fill(known.tables("accuracy")["winners"])), known.tables("accuracy")["pairs"]
     precision = accuracy.of_precision(pairs)
-    return {"libraries": of_rows(lambda rows: accuracy.of_layer(rows, "libraries"), "accuracy/winners", mine),
+    return {"libraries": of_rows(lambda rows: accuracy.of_layer(rows, "libraries"), "accuracy/winners", won[won.layer == "libraries"]),
             "precision": of_rows(precision[0], "accuracy/pairs", pairs[pairs.kind == "precision"]) if precision else None}
 
 
@@ -272,7 +261,7 @@ def _window(known):
     rows, maps = known.tables("stability")["windows"], known.tables("stability")["maps"]
     rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & (rows.status == "ok")]
     largest = rows.nlargest(1, "loops")
-    found = {name: of_rows(number(largest[name].max()), "stability/windows", largest) for name in ("loops", "lower", "upper")}
+    found = each("stability/windows", largest, **{name: number(largest[name].max()) for name in ("loops", "lower", "upper")})
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
     for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
         mine = automatic[automatic.scheme == scheme]
@@ -281,20 +270,18 @@ def _window(known):
 
 
 def _latency(known):
-    tables = known.tables("realtime")
-    null = tables["machine"][tables["machine"].status == "done"]
-    found = {"lost": of_rows(number(null.lost.sum(), 5), "realtime/machine", null), "gap": of_rows(
-        number(null.largest_us.max()), "realtime/machine", null), "watched": of_rows(number(null.seconds.sum()), "realtime/machine", null)}
-    return found | {"said": of_rows(" ".join(one for one in known.said("realtime") if one.startswith("Steps of")), "realtime/largest", tables["largest"])}
+    null = known.tables("realtime")["machine"].loc[lambda rows: rows.status == "done"]
+    said = " ".join(one for one in known.said("realtime") if one.startswith("Steps of"))
+    return each("realtime/machine", null, lost=number(null.lost.sum(), 5), gap=number(null.largest_us.max()), watched=number(null.seconds.sum())) | {
+        "said": of_rows(said, "realtime/largest", known.tables("realtime")["largest"])}
 
 
 def _own(known):
     ahead = fastest_own(known.tables("families")["scenes"], known.registry)
-    equal, batches = known.tables("engines")["equal_error"], known.tables("limit")["batches"]
-    equal, batches = equal[(equal.side == "library") & equal.ratio.notna()], batches[batches.status == "ok"]
-    texts = {"mechanisms": len(ahead), "least": number(1 / ahead.to_rival.max()), "most": number(1 / ahead.to_rival.min()),
-             "middle": number(1 / ahead.to_rival.median()), "names": shares(ahead.implementation.value_counts())}
-    found = {name: of_rows(text, "families/scenes", ahead) for name, text in texts.items()}
+    equal = known.tables("engines")["equal_error"].loc[lambda rows: (rows.side == "library") & rows.ratio.notna()]
+    batches = known.tables("limit")["batches"].loc[lambda rows: rows.status == "ok"]
+    found = each("families/scenes", ahead, mechanisms=len(ahead), least=number(1 / ahead.to_rival.max()), most=number(1 / ahead.to_rival.min()),
+                 middle=number(1 / ahead.to_rival.median()), names=shares(ahead.implementation.value_counts()))
     for name, chosen in (("few", batches.sets.min()), ("many", batches.sets.max())):
         mine = batches[batches.sets == chosen]
         found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine),
@@ -304,16 +291,11 @@ def _own(known):
 
 
 def _limits(known):
-    battery = known.tables("extremes")["battery"]
     said = " ".join(known.said("extremes")[:1]).partition(" Other false alarms:")[0]  # which the part's page names, run by run
-    return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", battery)}
+    return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", known.tables("extremes")["battery"])}
 
 
 def _minutes(known):
     """Budgets, which a run does not exceed by much; set-up and build come to it."""
-    found = {}
-    for name in ("quick", "full"):
-        path = ROOT / "study" / "profiles" / f"{name}.yaml"
-        parts = yaml.safe_load(path.read_text(encoding="utf-8"))["parts"]
-        found[name] = Number(f"{math.ceil(sum(part['seconds'] for part in parts.values()) / 60):d}", f"study/profiles/{name}.yaml")
-    return found
+    seconds = {name: sum(part["seconds"] for part in profiles.load(name, []).parts.values()) for name in ("quick", "full")}
+    return {name: Number(str(math.ceil(one / 60)), f"study/profiles/{name}.yaml") for name, one in seconds.items()}

@@ -53,7 +53,7 @@ def _records(one):
 
 
 def table(rows, columns, long=False):
-    """Rows, dicts by the heads of `columns`, {head: LaTeX column}. `long`: over several pages."""
+    """Rows in the order of `columns`, {head: LaTeX column}. `long`: over several pages."""
     if not rows:
         return tex("Not measured in this set.")
     frame = pandas.DataFrame(rows, columns=list(columns))
@@ -63,25 +63,24 @@ def table(rows, columns, long=False):
 
 def contenders(known):
     """Who takes part, and what was tried for each."""
-    registry, tried = known.registry, known.tables("tuning")["alternatives"]
-    tried = tried[tried.status == "ok"]
+    registry, tried = known.registry, known.tables("tuning")["alternatives"].loc[lambda rows: rows.status == "ok"]
     rows = []
     for name, one in registry.variants.items():
         if name not in registry.examples:
             mine = tried[tried.base == name]
-            rows.append({"variant": name, "library": f"{one['library']}" if name not in registry.own else "none: own", "form": one["description"],
-                         "2008": "yes" if one.get("role") == "paper" else "no", "tried": str(mine.alternative.nunique()),
-                         "longer / shorter": f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"})
+            rows.append((name, "none: own" if name in registry.own else one["library"], one["description"],
+                         "yes" if one.get("role") == "paper" else "no", mine.alternative.nunique(),
+                         f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"))
     return table(rows, {"variant": r"P{30mm}", "library": r"P{26mm}", "form": r"P{74mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
 
 
 def decided(known):
     """What the mechanisms were held to, and what was found."""
-    rows = [{"what": what, "asked": asked, "found": shorten(found, MOST_FOUND, placeholder=" …"), "holds": {True: "yes", False: "no", None: "–"}[holds]}
+    rows = [(what, asked, shorten(found, MOST_FOUND, placeholder=" …"), {True: "yes", False: "no", None: "–"}[holds])
             for what, asked, found, holds in bounds.bounds(known.tables("families"))]
-    held = known.tables("limit")["held"]
-    rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
-              else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
+    held, holds = known.tables("limit")["held"].dropna(subset=["worst"]), {"held": "yes", "not held": "no"}
+    rows += [(row.what, f"{row.sign} {number(row.bound)}", between(row.worst, row.low, row.high), holds.get(row.verdict, row.verdict))
+             for row in held.itertuples()]
     return table(rows, {"what": r"P{64mm}", "asked": r"P{36mm}", "found": r"P{52mm}", "holds": r"P{14mm}"})
 
 
@@ -89,37 +88,28 @@ def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
     mine, lost, results = led(real_mechanisms(known)), losses(known), known.results
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
-    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(gmean(one)),
-             "worst": number(one.max()), "where": one.idxmax()} | _price(prices.get(name)) for name, one in [*lost.items()][:RANKED]]
-    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"} | dict.fromkeys(PRICE, "r"))
-
-
-PRICE = ("map: mean", "map: worst", "cells", "by pilot")
-
-
-def _price(row):
-    return dict.fromkeys(PRICE, "–") if row is None else dict(zip(PRICE, (number(row["mean"]), number(row["worst"]), f"{row['cells']} of {row['of']}",
-                                                                          str(row["rough"]))))
+    rows = []
+    for name, one in [*lost.items()][:RANKED]:
+        price = prices.get(name)
+        rows.append((name, mine.get(name, 0), len(one), number(gmean(one)), number(one.max()), one.idxmax(), *(
+            (number(price["mean"]), number(price["worst"]), f"{price['cells']} of {price['of']}", price["rough"]) if price else ["–"] * 4)))
+    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"}
+                 | dict.fromkeys(("map: mean", "map: worst", "cells", "by pilot"), "r"))
 
 
 def claims(known):
-    """The claims of 2008, each with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those
-    without a verdict, and why."""
+    """The claims of 2008, with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those without."""
     beside = {one.folder.name + ("" if known.together else f" ({one.context['commit'][:10]})"): one.tables("map")["claims"].set_index(["id", "claim"])
               for one in known.sets[1:]}
     rows, without = [], {}
     for row in known.tables("map")["claims"].itertuples():
-        mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, known.folder.name: _ours(row)}, [row.verdict]
-        for head, its in beside.items():
-            there = its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None
-            mine[head] = "–" if there is None else _ours(there)
-            verdicts += [there.verdict] if known.together and there is not None else []
+        theirs = [its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None for its in beside.values()]
+        verdicts = [row.verdict, *(one.verdict for one in theirs if known.together and one is not None)]
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
             without.setdefault((row.id, row.reason), []).append(row.claim)
         else:
-            rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
-    width = 44 / len(known.sets)
-    heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
+            rows.append((row.id, row.claim, row.paper, *map(_ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
+    heads = dict.fromkeys((known.folder.name, *beside), r"P{%.0fmm}" % (44 / len(known.sets)))
     return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True) + _without(without)
 
 
@@ -131,15 +121,15 @@ def _without(found):
 
 
 def _ours(row):
-    return "–" if not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    return "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
 
 
 def machines(known):
     """What was measured on each machine that is compared, a column each."""
     sets = known.compared or [known]
     found, gained = [_machine(one) for one in sets], machine.gains(sets)
-    rows = [{"": what} | {one.folder.name: mine[what] for one, mine in zip(sets, found)} for what in found[0]]
-    rows += [{"": f"a step with {name}, times that on {sets[0].folder.name}"} | {one.folder.name: number(value) for one, value in zip(sets, gained[name])}
+    rows = [(what, *(mine[what] for mine in found)) for what in found[0]]
+    rows += [(f"a step with {name}, times that on {sets[0].folder.name}", *map(number, gained[name]))
              for name in GAINED if name in gained and known.compared]
     return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(sets)) for one in sets})
 
@@ -158,14 +148,12 @@ def _machine(one):
 
 def differs(known):
     """Where no library is among the best on all machines: on each who is fastest, and what those take who are so elsewhere."""
-    rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
-    for one in found[:DIFFERING]:
-        row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
-        for there, ranking in zip(known.compared, one.machines):
-            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
-                      if name != ranking.winner and name in ranking.ratios]
-            row[there.folder.name] = "; ".join([ranking.winner, *others])
-        rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
+    rows, differ = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
+    for one in differ[:DIFFERING]:
+        found = ["; ".join([ranking.winner, *(f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
+                                              if name != ranking.winner and name in ranking.ratios)]) for ranking in one.machines]
+        rows.append((one.question.scene, one.question.form.partition("-")[0], number(one.question.variables, 5), *found,
+                     f"{one.robust} {number(one.worst.get(one.robust))}"))
     heads = {there.folder.name: r"P{%.0fmm}" % (88 / len(known.compared)) for there in known.compared}
     return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | heads | {"robust": r"P{30mm}"}) if rows else tex(
         "None." if known.compared else "Not measured in this set.")
@@ -177,38 +165,33 @@ def leaves(known):
     for row in cases(known.tables("families"), known.view("families")):
         if row["link"].endswith("#by-hand"):
             take, _, lost = row["take"].partition("; on families left out ")
-            rows.append({"case": row["case"], "take": take, "slower than the fastest": lost.replace(" slower than the fastest library", "")})
+            rows.append((row["case"], take, lost.replace(" slower than the fastest library", "")))
     return table(rows, {"case": r"P{22mm}", "take": r"P{94mm}", "slower than the fastest": r"P{52mm}"})
 
 
 def defaults(known):
     """Defaults of other tools, as rules for our contenders."""
-    rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
-            for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
+    found = known.tables("families")["defaults"].dropna(subset=["mean"]).sort_values("mean").to_dict("records")
+    rows = [(row["rule"], row["chooses"], ("about " if row["rough"] else "") + number(row["mean"]), number(row["worst"])) for row in found]
     rows = rows[:DEFAULTS - 2] + rows[-2:] if len(rows) > DEFAULTS else rows
     return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
 
 
 def largest(known):
     """Who keeps up with which size: a row an implementation, a column a form and deadline; those that keep up with most."""
-    found, heads, most = {}, {}, {}
-    for row in known.tables("realtime")["largest"].sort_values(["scheme", "step"]).itertuples():
-        if row.largest == row.largest:
-            head = f"{row.scheme}, {1e3 * row.step:g} ms"
-            heads[head] = "l"
-            most[row.implementation] = max(most.get(row.implementation, 0), row.largest)
-            found.setdefault(row.implementation, {})[head] = f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (
-                f"; not {number(row.next, 5)}" if row.next == row.next else "")
-    order = sorted(found, key=most.get, reverse=True)[:RANKED]
-    return table([{"implementation": name} | {head: found[name].get(head, "–") for head in heads} for name in order], {"implementation": "l"} | heads)
+    rows = known.tables("realtime")["largest"].dropna(subset=["largest"]).sort_values(["scheme", "step"])
+    most = rows.groupby("implementation", sort=False).largest.max().nlargest(RANKED)
+    rows = rows.assign(head=[f"{row.scheme}, {1e3 * row.step:g} ms" for row in rows.itertuples()], said=[
+        f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (f"; not {number(row.next, 5)}" if row.next == row.next else "")
+        for row in rows.itertuples()])
+    found = rows.pivot(index="implementation", columns="head", values="said").reindex(most.index)[rows["head"].unique()].fillna("–").reset_index()
+    return table(found.values.tolist(), dict.fromkeys(found, "l"))
 
 
 def engines(known):
     """Each engine's time over that of each side of ours, at equal error."""
-    found = known.tables("engines")["equal_error"]
-    rows = []
-    for engine, mine in found[~found.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
-        rows.append({"": title(engine)} | {label: _times(mine[mine.side == side]) for side, label in SIDES.items()})
+    found = known.tables("engines")["equal_error"].loc[lambda rows: ~rows.engine.str.endswith(NATIVE)]
+    rows = [(title(engine), *(_times(mine[mine.side == side]) for side in SIDES)) for engine, mine in found.groupby("engine", sort=False)]
     return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{32mm}"))
 
 
@@ -229,10 +212,9 @@ def mechanisms(known):
     for row in best_form(tables_["winners"], "libraries").sort_values("variables").itertuples():
         others = [name for name in row.equivalent.split() if name != row.winner]
         mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
-        rows.append({"mechanism": row.scene, "form": row.scheme.partition("-")[0], "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
-                     "fastest library": row.winner, "step, µs": number(row.step_us), "next ÷ it": between(row.margin, row.low, row.high),
-                     "as fast": ", ".join(others) or ("" if row.decided else "open"),
-                     "own": "" if mine is None else f"{number(1 / mine.to_rival)}" + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
-                                                                                     if bounded(mine.to_rival_low, mine.to_rival_high) else "")})
+        rows.append((row.scene, row.scheme.partition("-")[0], number(row.variables, 5), number(about.per_column.get(row.scene, math.nan), 2),
+                     row.winner, number(row.step_us), between(row.margin, row.low, row.high), ", ".join(others) or ("" if row.decided else "open"),
+                     "" if mine is None else number(1 / mine.to_rival) + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
+                                                                          if bounded(mine.to_rival_low, mine.to_rival_high) else "")))
     return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{24mm}", "step, µs": "r",
                         "next ÷ it": "l", "as fast": r"P{28mm}", "own": "l"}, long=True)

@@ -1,1 +1,0 @@
-# The viewer behind study/view: a motion becomes an HTML page and a PNG contact sheet.

@@ -15,9 +15,8 @@ START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another 
 
 @dataclass
 class Motion:
-    """`positions` is (frames, points, dimension), m; `curves` has the columns of CURVES by name,
-    one value a frame, or is empty if the file lacks them; `outputs` has the scene's own by name, each
-    {column: one value a frame}."""
+    """`positions` is (frames, points, dimension), m; `curves` has the columns of CURVES by name, one value a frame, or is empty if the file
+    lacks them; `outputs` has the scene's own by name, each {column: one value a frame}."""
     times: numpy.ndarray
     positions: numpy.ndarray
     curves: dict
@@ -25,10 +24,8 @@ class Motion:
 
 
 def read(path, scene, frames):
-    """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a
-    frame is the largest of all rows since the frame before. Raises StudyError."""
-    with _opened(path) as file:
-        columns = _header(path, file)
+    """About `frames` rows, equally spaced, and the last. A frame's constraint violation is the largest of all rows since the frame before."""
+    with _opened(path) as (file, columns):
         places, curves = _places(path, columns, scene)
         table, largest = _table(path, file, columns, frames)
     positions = table[:, places].reshape(len(table), len(scene.points), scene.dimension)
@@ -40,71 +37,71 @@ def read(path, scene, frames):
 
 
 def read_outputs(path, scene, frames):
-    """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory
-    of: their rows are at the same times. Raises StudyError."""
-    with _opened(path) as file:
-        columns = _header(path, file)
+    """Motion.outputs from the CSV of `mbs simulate --output`, of the run whose trajectory was read: their rows are at the same times."""
+    with _opened(path) as (file, columns):
         table, _ = _table(path, file, columns, frames)
-    return {name: {column: table[:, place] for place, column in enumerate(columns)
-                   if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
+    return {name: {column: table[:, place] for place, column in enumerate(columns) if name in (column, column.rpartition(".")[0])}
+            for name in scene.outputs}
 
 
 @contextmanager
 def _opened(path):
-    """The file at `path`; StudyError if it cannot be read, or is a device or a pipe, which may have no end and cannot be read
-    twice."""
+    """(the file at `path`, names of its columns); StudyError if it cannot be read, or is a device or a pipe, which may have no end and cannot
+    be read twice."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise StudyError(f"{path} is no regular file")
     try:
         with open(path, "rb") as file:
-            yield file
+            yield file, _columns(path, file.readline(LONGEST))
     except OSError as error:
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
-def _header(path, file):
-    line = file.readline(LONGEST)
+def _columns(path, line):
     if not line.strip():
         raise StudyError(f"{path} is empty: it must be the CSV of `mbs simulate --trajectory`")
     columns = line.decode("utf-8", "replace").rstrip("\r\n").split(",")
     if columns[0] != "t":
         raise StudyError(f"{path} is no trajectory: its first column is {columns[0][:40]!r}, "
                          "not t (write one with `mbs simulate SCENE --trajectory FILE`)")
-    if len(set(columns)) < len(columns):
-        doubled = next(name for name, count in Counter(columns).items() if count > 1)
-        raise StudyError(f"{path} has the column {doubled} more than once")
+    if doubled := [name for name, count in Counter(columns).items() if count > 1]:
+        raise StudyError(f"{path} has the column {doubled[0]} more than once")
     return columns
 
 
 def _places(path, columns, scene):
     """Columns of all positions, point by point, then of CURVES if they are there."""
     place = {name: index for index, name in enumerate(columns)}
-    axes = "xyz"[:scene.dimension]
-    wanted = [f"{name}.{axis}" for name, _ in scene.points for axis in axes]
+    wanted, speeds = ([f"{name}.{v}{axis}" for name, _ in scene.points for axis in "xyz"[:scene.dimension]] for v in ("", "v"))
     missing = [name for name in wanted if name not in place]
-    names = {name for name, _ in scene.points}
-    foreign = [column for column in columns[1:] if column not in CURVES
-               and (column.rpartition(".")[0] not in names
-                    or column.rpartition(".")[2].lstrip("v") not in list(axes))]
+    foreign = sorted(place.keys() - {"t", *CURVES, *wanted, *speeds}, key=place.get)
     if missing or foreign:
         what = f"it lacks the column {missing[0]}" if missing else f"it has the column {foreign[0]}"
         more = len(missing or foreign) - 1
-        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: {what}"
-                         + (f" and {more} more" if more else ""))
+        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: {what}" + (f" and {more} more" if more else ""))
     found = [name for name in CURVES if name in place]
     if found and len(found) < len(CURVES):
         raise StudyError(f"{path} has {found[0]} but not all of {', '.join(CURVES)}")
-    return [place[name] for name in wanted], [place[name] for name in found]
+    return [[place[name] for name in names] for names in (wanted, found)]
 
 
 def _table(path, file, columns, frames):
-    """(the rows that are shown, of each the largest values since the one before), two arrays."""
+    """(the rows that are shown, of each the largest values since the one before), two arrays; StudyError naming the line of a row that is not
+    whole or does not come after the one before."""
     count = sum(1 for _ in _lines(file))
     if count < 2:
         raise StudyError(f"{path} has {count} row(s): a motion needs two at least")
-    every, shown, largest, since = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf
-    for row, values in enumerate(_rows(path, file, columns)):
-        since = numpy.maximum(since, values)
+    every, shown, largest, since, last = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf, -numpy.inf
+    for row, line in enumerate(_lines(file)):
+        try:
+            values = numpy.array(line.split(b","), dtype=float)
+        except ValueError:
+            values = numpy.empty(0)
+        if len(values) != len(columns) or not numpy.isfinite(values).all():
+            raise StudyError(f"{path}, line {row + 2}: not {len(columns)} finite numbers, as the header has columns: is the file complete?")
+        if values[0] <= last:
+            raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
+        last, since = values[0], numpy.maximum(since, values)
         if row % every == 0 or row == count - 1:
             shown.append(values)
             largest.append(since)
@@ -119,31 +116,13 @@ def _lines(file):
     return iter(lambda: file.readline(LONGEST), b"")
 
 
-def _rows(path, file, columns):
-    """Values of all rows; StudyError naming the line of one that is not whole or does not come after the one before."""
-    last = -numpy.inf
-    for row, line in enumerate(_lines(file)):
-        try:
-            values = numpy.array(line.split(b","), dtype=float)
-        except ValueError:
-            values = numpy.empty(0)
-        if len(values) != len(columns) or not numpy.isfinite(values).all():
-            raise StudyError(f"{path}, line {row + 2}: not {len(columns)} finite numbers, as the header has columns: is the file complete?")
-        if values[0] <= last:
-            raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
-        last = values[0]
-        yield values
-
-
 def _same_start(path, motion, scene):
     """A trajectory from t = 0 must start where the scene does."""
     start = numpy.asarray(scene.start, dtype=float)
     if motion.times[0] != 0 or not len(start):
         return
     away = numpy.abs(motion.positions[0] - start).max(axis=1)
-    extent = max(numpy.ptp(start, axis=0).max(), 1e-12)
     worst = int(away.argmax())
-    if away[worst] > START_TOLERANCE * extent:
-        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: "
-                         f"{scene.points[worst][0]} starts {away[worst]:.3g} m away from where the "
-                         "scene has it")
+    if away[worst] > START_TOLERANCE * max(numpy.ptp(start, axis=0).max(), 1e-12):
+        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: {scene.points[worst][0]} starts {away[worst]:.3g} m away "
+                         "from where the scene has it")
