@@ -8,10 +8,9 @@ from analysis.core.schema import conform, of_part
 from analysis.core.statistics import median
 from analysis.map import carry
 from analysis.map.cells import table as cells
-from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
+from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
+                                 tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
-from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
-from analysis.map.claims_starting import starting_sparse, table1, table2_claims
 from analysis.map.results import Results, with_samples
 from analysis.map.timed import AFTER, timed_rows
 

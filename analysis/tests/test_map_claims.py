@@ -6,10 +6,9 @@ import pytest
 
 from analysis.core.files import ROOT
 from analysis.map import ledger, paper
-from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
+from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
+                                 tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
-from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
-from analysis.map.claims_starting import starting_sparse, table1, table2_claims
 from analysis.map.tables import claims
 from analysis.map.ledger import (CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, at_least, at_most,
                                  factor, verdict)
