@@ -61,9 +61,9 @@ def _cell(rows, verdict):
     good = [row for row in rows if row["status"] == "ok"]
     lost = [row for row in rows if row["status"] not in ("ok", "dropped", "slower")]
     first = (lost or good or rows)[0]
-    row = {"implementation": first["implementation"], "status": "ok", "reason": "", "verdict": "", "record": first["record"]}
+    row = {key: first[key] for key in ("implementation", "status", "reason", "record")} | {"verdict": ""}
     if lost or not good:
-        return row | {"status": first["status"], "reason": first["reason"]}
+        return row
     if verdict:
         row["verdict"] = verdict[0]
         if verdict[0] not in ("agrees", "dropped"):

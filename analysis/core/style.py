@@ -15,8 +15,7 @@ from analysis.core.text import number
 # Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
-SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A",
-          "#A6A6D9", "#00707A")
+SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A", "#A6A6D9", "#00707A")
 ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#5B3A9E")
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")
@@ -88,7 +87,7 @@ def panels(count, columns, wide, high):
     return figure, list(grid.flat[:count])
 
 
-def below(figure, columns, more=()):
+def below(figure, columns, more):
     """A legend below all of a figure, of what its axes have labels for and of `more` handles."""
     found = {label: handle for axes in figure.axes for handle, label in zip(*axes.get_legend_handles_labels())}
     handles = [*found.values(), *more]
@@ -102,9 +101,9 @@ def legend(axes, order):
         axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
 
 
-def nothing(text, size=(6, 1.2)):
+def nothing(text):
     """A figure that says what is missing, and no more."""
-    figure, axes = plt.subplots(figsize=size)
+    figure, axes = plt.subplots(figsize=(6, 1.2))
     missing(axes, text)
     return figure
 

@@ -29,11 +29,10 @@ COLUMNS = ("scene", "implementation", "environment", "process", "layout", "statu
 
 
 def processes(records):
-    """One row for each contender of each process of timed cells (records of `study.core.timing.measure`):
-    scene, implementation, environment, process (its number), layout (the program's, if it had one), status, reason, step_us (median over samples, with
-    the least and the largest), samples (µs a step), clock_us (the median by the clock), record, and every counter of `mbs bench` by its name."""
-    rows = [row for record in records for row in _rows(record)]
-    found = pandas.DataFrame(rows)
+    """One row for each contender of each process of timed cells (records of `study.core.timing.measure`): COLUMNS, and every counter of
+    `mbs bench` by its name. process: its number; layout: the program's, if it had one; step_us: median over samples, with the least and
+    the largest; samples: µs a step; clock_us: the median by the clock."""
+    found = pandas.DataFrame([row for record in records for row in _rows(record)])
     return found.reindex(columns=[*COLUMNS, *(name for name in found if name not in COLUMNS)])
 
 
@@ -162,7 +161,14 @@ def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     layout, or process, there is no interval: it reaches from 0 to infinity."""
     rows = paired(rows)
-    return of_logs([numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))], *rows.beyond)
+    logs = [numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))]
+    if not logs:
+        return NONE
+    if len(logs) == 1:
+        return Ratio(math.exp(logs[0]), 0.0, math.inf)
+    middle, half, error, freedom = student(logs, *rows.beyond)
+    chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
 def by_layout(rows, logs):
@@ -171,17 +177,6 @@ def by_layout(rows, logs):
     for number, value in logs.items():
         found.setdefault(rows.layouts.get(number, number), []).append(value)
     return list(found.values())
-
-
-def of_logs(logs, more=0.0, of=1):
-    """The Ratio whose logarithm is the mean of `logs`, independent of each other. `more`, `of`: as `student` takes them."""
-    if not len(logs):
-        return NONE
-    if len(logs) == 1:
-        return Ratio(math.exp(logs[0]), 0.0, math.inf)
-    middle, half, error, freedom = student(logs, more, of)
-    chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
-    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
 def student(values, more=0.0, of=1):
@@ -203,16 +198,11 @@ def log_ratios(rows, first, second):
     if direct or not (mine and other):
         return direct
     environments = [next(iter(one))[0] for one in (mine, other)]
-    common = _common(logs, environments)
-    if common is None:
-        return {}
-    anchors = [logs[name] for name in common]
-    found = {}
-    for number in sorted({key[1] for key in mine} & {key[1] for key in other}):
-        keys = [(environment, number) for environment in environments]
-        if keys[0] in anchors[0] and keys[1] in anchors[1]:
-            found[number] = _median(mine[keys[0]], anchors[0][keys[0]]) - _median(other[keys[1]], anchors[1][keys[1]])
-    return found
+    there = [{name.partition("+")[0]: found for name, found in logs.items() if any(key[0] == one for key in found)} for one in environments]
+    anchor = min(there[0].keys() & there[1].keys(), default=None)
+    first, second = ({key[1]: _median(samples, known[anchor][key]) for key, samples in one.items() if key in known.get(anchor, ())}
+                     for one, known in zip((mine, other), there))
+    return {number: first[number] - second[number] for number in sorted(first.keys() & second.keys())}
 
 
 def _median(first, second):
@@ -220,14 +210,6 @@ def _median(first, second):
     count = min(len(first), len(second))
     ordered = numpy.sort(first[:count] - second[:count])  # numpy.median does the same, six times slower
     return float(ordered[(count - 1) // 2] + ordered[count // 2]) / 2
-
-
-def _common(logs, environments):
-    """Names, one in each environment, of a variant that both have."""
-    names = [{name.partition("+")[0]: name for name, found in logs.items() if any(key[0] == one for key in found)}
-             for one in environments]
-    shared = sorted(set(names[0]) & set(names[1]))
-    return [one[shared[0]] for one in names] if shared else None
 
 
 @dataclass(frozen=True)
