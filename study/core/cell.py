@@ -25,10 +25,6 @@ class Contender:
         return "+" not in self.name
 
     @property
-    def file_name(self):
-        return self.name.replace("/", ".")
-
-    @property
     def environment(self):
         """What its processes share with those of others."""
         return f"{self.build or 'own'}|{self.blas}"
@@ -44,18 +40,14 @@ def twin_of(one):
 
 
 def on_usual_pairs(registry, pairs, names):
-    """[Contender] of variants by name; `pairs`: {folder or "all": pair}, as a profile has them."""
-    return [Contender(name, name, usable(registry, pairs.get(name.split("/")[0], pairs["all"]))) for name in names]
-
-
-def usable(registry, pair):
-    """The pair, or the system's where it is not installed."""
-    return pair if registry.pairs.get(pair, "unknown") == "" else SYSTEM
+    """[Contender] of variants by name; `pairs`: {folder or "all": pair}, as a profile has them. Where one is not installed: the system's."""
+    usual = [pairs.get(name.split("/")[0], pairs["all"]) for name in names]
+    return [Contender(name, name, pair if registry.pairs.get(pair) == "" else SYSTEM) for name, pair in zip(names, usual)]
 
 
 def control(registry, pairs):
     """CONTROL on the pair of most; `pairs`: as on_usual_pairs has them."""
-    return replace(CONTROL, blas=usable(registry, pairs["all"]))
+    return on_usual_pairs(registry, pairs, [NULL])[0]
 
 
 def by_environment(contenders):
@@ -112,7 +104,7 @@ class Cell:
     def file_name(self):
         """ROLE/WHO@WHAT-ID.json: readable, and its own for every cell."""
         identity = digest(json.dumps(self.document(), sort_keys=True))[:10]
-        who = self.contenders[0].file_name if len(self.contenders) == 1 else "all" if self.contenders else "harness"
+        who = self.contenders[0].name.replace("/", ".") if len(self.contenders) == 1 else "all" if self.contenders else "harness"
         what = Path(self.scene).name.removesuffix(".json") or self.program
         safe = "".join(c if c.isalnum() or c in "-+=,.:" else "_" for c in what)[:60].replace(":", "-")
         return f"{self.role or self.kind or 'run'}/{who}@{safe}-{identity}.json"

@@ -65,8 +65,23 @@ def run_workflow(studyset, columns, stored=False):
     StudyError, or KeyboardInterrupt once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
     studyset.progress.unlink(missing_ok=True)
+    now, since = None, 0.0  # the part and its column at work, and when they began
+
+    def show(display):
+        nonlocal now, since
+        if studyset.progress.exists():
+            known = read_json(studyset.progress)
+            part, column, text = known["part"], known["column"], known["text"]
+            if (part, column) != now:
+                now, since = (part, column), time.monotonic()
+            ahead = planned({one: {name: seconds for name, seconds in names.items() if not studyset.stamp(one, name).exists()}
+                             for one, names in columns.items()})
+            display.show(f"[{list(columns).index(part) + 1}/{len(columns)}] {part}", f"{column}: {known['cells']}, at most "
+                         f"{duration(ahead - (time.monotonic() - since))} left" + (f"; {text}" if text else ""))
+        elif not any(columns.values()):
+            display.show("pages")
     pages = ["/usr/bin/python3", "-m", "study.core.job", ".", "pages"]
-    follow(studyset, pages if stored else _command(studyset), _Cells(studyset, columns))
+    follow(studyset, pages if stored else _command(studyset), show)
 
 
 def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
@@ -106,28 +121,6 @@ def _command(studyset):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
-
-
-class _Cells:
-    """Shows the part and its column at work, and the time left; where nothing is run, that pages are drawn."""
-
-    def __init__(self, studyset, columns):
-        self.set, self.columns, self.now, self.since = studyset, columns, None, 0.0
-
-    def __call__(self, display):
-        if self.set.progress.exists():
-            display.show(*self._said(**read_json(self.set.progress)))
-        elif not any(self.columns.values()):
-            display.show("pages")
-
-    def _said(self, part, column, cells, text):
-        if (part, column) != self.now:
-            self.now, self.since = (part, column), time.monotonic()
-        ahead = planned({one: {name: seconds for name, seconds in names.items() if not self.set.stamp(one, name).exists()}
-                         for one, names in self.columns.items()})
-        left = duration(ahead - (time.monotonic() - self.since))
-        place = list(self.columns).index(part) + 1
-        return f"[{place}/{len(self.columns)}] {part}", f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else "")
 
 
 def _stop(process, ends):

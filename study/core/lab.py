@@ -73,9 +73,6 @@ class Lab:
         """The record of a cell that is not run, with its reason."""
         cell = cell.settled()
         self._expect([cell])
-        return self._skipped(cell, status, reason)
-
-    def _skipped(self, cell, status, reason):
         path = self._path(cell)
         if not path.exists():
             records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
@@ -106,9 +103,9 @@ class Lab:
     def _made(self, cell, drop):
         program = program_of(*cell.built.split("@"))
         if not cell.own and not (ROOT / program).exists():  # `mbs` is there, or nothing is
-            return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
+            return self.skip(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:
-            return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
+            return self.skip(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self._asked_of(cell)
         data = executor.run(cell, context if cell.own and cell.contenders else None, self.set.scratch)
         if data["status"] != records.RUN_ENDED and (NOT_WRITTEN.search(data["reason"]) or ROOM > min(
