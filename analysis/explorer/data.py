@@ -1,7 +1,7 @@
 # What the explorer knows of a set: the samples of every contest, so that a page can rank anew whoever is left; points of error
 # and time; the rule that predicts.
-import dataclasses
 import re
+from collections import namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -83,17 +83,7 @@ def of_map(folder):
     return found
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A scene whose runs were judged: its points that have an error and a time, and their rounds."""
-    subject: str
-    scene: str
-    title: str
-    unit: str
-    n: float
-    fill: float  # %
-    points: pandas.DataFrame
-    rounds: pandas.DataFrame
+Curve = namedtuple("Curve", "subject scene title unit n fill points rounds")  # a scene whose runs were judged: its points with error and time
 
 
 def of_accuracy(folder):
@@ -103,8 +93,7 @@ def of_accuracy(folder):
     kinds, found = columns(view.settings), []
     timed = accuracy.timed([one for one in records.read_part(folder, "accuracy") if kinds.get(one.column, ("pairs",))[0] != "pairs"])
     for (subject, scene), rows in tables["points"].groupby(["subject", "scene"], sort=False):
-        known = about.loc[subject]
-        mine = meeting(rows, numpy.inf)
+        known, mine = about.loc[subject], meeting(rows, numpy.inf)
         if len(mine):
             found.append(Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
                                accuracy.rounds(rows, timed)))
@@ -163,7 +152,9 @@ def _curve(one, number):
     labels = {accuracy.label(point): place for place, point in enumerate(points.to_dict("records"))}
     rows = [[labels[row.implementation], int(row.process), row.status, None if pandas.isna(row.seconds) else _short(row.seconds)]
             for row in one.rounds.itertuples() if row.implementation in labels]
-    return {key: value for key, value in dataclasses.asdict(one).items() if key not in ("points", "rounds")} | {
+    known = one._asdict()
+    del known["points"], known["rounds"]
+    return known | {
         "family": family_of(one.scene), "rounds": rows,
         "points": [[number[row[0]], *(None if isinstance(value, float) and numpy.isnan(value) else value for value in row[1:])]
                    for row in points.itertuples(index=False)]}

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import pandas
 
 from analysis.core.timing import Ranking
+from analysis.map import carry
 from analysis.map.timed import layers
 
 
@@ -75,7 +76,8 @@ def _row(results, cell, layer):
     if ranking is None:
         return row | {"record": next(iter(rows.record), "")}
     mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
-    within = results.within(cell.scene, ranking.second, ranking.winner) if ranking.second else ()
+    both = ranking.second, ranking.winner
+    within = carry.within(results.paired(cell.scene).of(*both), *both) if ranking.second else ()
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": ranking.margin.value, "low": ranking.margin.low,
                   "high": ranking.margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)} | dict(zip(("within_low", "within_high"), within))

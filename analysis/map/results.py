@@ -1,5 +1,5 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
-from dataclasses import dataclass
+from collections import namedtuple
 from functools import cache, cached_property
 
 from analysis.core.registry import NULL, TWIN
@@ -9,6 +9,8 @@ from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
+# Time of `slow` over that of `fast`, with its interval, and where it was taken: fill in %.
+Versus = namedtuple("Versus", "value low high slow fast size fill record")
 
 
 def of(tables, view):
@@ -23,19 +25,6 @@ _last = []
 
 def with_samples(rows):
     return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
-
-
-@dataclass(frozen=True)
-class Versus:
-    """Time of `slow` over that of `fast`, with its interval, and where it was taken."""
-    value: float
-    low: float
-    high: float
-    slow: str
-    fast: str
-    size: float
-    fill: float  # percent
-    record: str
 
 
 class Results:
@@ -63,7 +52,7 @@ class Results:
         return self._scenes.get(scene, self.timing[:0])
 
     @cache
-    def _paired(self, scene):
+    def paired(self, scene):
         """What statistics need of a scene's rows: wide tables are slow to walk through."""
         return timed.Scene(self.rows(scene), self.beyond(scene))
 
@@ -74,11 +63,6 @@ class Results:
     @cached_property
     def _of_seeds(self):
         return carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
-
-    @cached_property
-    def _statuses(self):
-        """{scene: {status: names}}"""
-        return {scene: rows.groupby("status").implementation.agg(set).to_dict() for scene, rows in self._scenes.items()}
 
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
@@ -106,16 +90,12 @@ class Results:
         return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
                     ~rows.implementation.str.endswith(TWIN)]
 
-    def usual(self, variant):
-        """The pair that a variant is ranked on."""
-        return next(iter(self.tidy.blas[self.tidy.implementation == variant]), "")
-
     def rank(self, scene, names):
         return self._rank(scene, frozenset(names) - {NULL})
 
     @cache
     def _rank(self, scene, names):
-        return self._paired(scene).rank(names)
+        return self.paired(scene).rank(names)
 
     def fastest(self, scene, names):
         """The one of least time; None if nobody was timed."""
@@ -125,7 +105,7 @@ class Results:
     @cache
     def ratio(self, scene, slow, fast):
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
-        found = self._paired(scene).ratio(slow, fast)
+        found = self.paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
 
     def versus(self, scene, slow, fast):
@@ -148,10 +128,6 @@ class Results:
         found = [one for one in found if one]
         return found if found and found[-1].size >= reaching else []
 
-    def within(self, scene, slow, fast):
-        """carry.within of their ratio."""
-        return carry.within(self._paired(scene).of(slow, fast), slow, fast)
-
     def failed(self, scene, names):
         return self._with(scene, names, FAILURES)
 
@@ -161,5 +137,6 @@ class Results:
 
     def _with(self, scene, names, statuses):
         """Those of `names` that have a row of one of these statuses in a scene."""
-        known = self._statuses.get(scene, {})
-        return [name for name in names if any(name in known.get(status, ()) for status in statuses)]
+        rows = self.rows(scene)
+        known = set(rows.implementation[rows.status.isin(statuses)])
+        return [name for name in names if name in known]

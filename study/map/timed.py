@@ -148,23 +148,17 @@ class Rule:
                    or alive.values(), default=math.inf)
 
     def chosen(self, verdicts):
-        limit = self._factor * self.best(verdicts)
+        known, filled = self.lab.settings["slower"], self.scene.fill is not None
+        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
+        limit = (known["filled"] if filled else column.get("slower", known["natural"])) * self.best(verdicts)
         kept = {one for one, pilot in self.pilots.items() if pilot.alive and pilot.step_us <= limit}
-        if self.scene.fill is not None:  # the two fastest of each family
+        if filled:  # the two fastest of each family
             near = [one for one, pilot in self.pilots.items() if pilot.step_us <= FAMILY * limit and verdicts.get(one, True)]
             near.sort(key=lambda one: self.pilots[one].step_us)
             said = self.lab.registry.variants
             kept |= {one for key in ("dense", "unsymmetric") for value in (True, False)
                      for one in [one for one in near if said[one.variant].get(key, False) == value][:2]}
         return [one for one in self.pilots if one in kept]
-
-    @property
-    def _factor(self):
-        known = self.lab.settings["slower"]
-        if self.scene.fill is not None:
-            return known["filled"]
-        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
-        return column.get("slower", known["natural"])
 
 
 def alternatives(lab, scene):
