@@ -84,7 +84,6 @@ def from_text(text, name, where):
 
 
 def write(path, data):
-    """Writes the fields of a Record, without its name."""
     write_text(path, to_text(data))
 
 

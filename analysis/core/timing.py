@@ -9,7 +9,7 @@
 # Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
-from collections import Counter
+from collections import Counter, namedtuple
 from dataclasses import dataclass, replace
 
 import numpy
@@ -121,14 +121,8 @@ def apart(rows, column="step_us"):
     return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
-@dataclass(frozen=True)
-class Ratio:
-    value: float
-    low: float
-    high: float
-    chance: float = math.nan  # to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
-
-
+# chance: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
+Ratio = namedtuple("Ratio", "value low high chance", defaults=(math.nan,))
 NONE = Ratio(math.nan, math.nan, math.nan)
 NO_VARIANCE = (0.0, 1)
 

@@ -46,7 +46,6 @@ class Contest:
 
 
 def of_families(folder):
-    """Contests on mechanisms, in both forms."""
     about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
     about = about[about.n.notna() & about.fill.notna()].set_index("scene")
     table = table[table.scene.isin(about.index) & ~table.implementation.isin(Folder(folder).registry.examples)]
@@ -120,7 +119,6 @@ def as_json(folder, found, number):
 
 
 def _mechanisms(folder):
-    """{scene: its family and numbers}"""
     numbers = [name for name, (kind, _, _) in schema.of_part("families")["mechanisms"].items() if kind == "number"]
     rows = schema.read_table(folder, "families", "mechanisms").to_dict("records")
     return {row["scene"]: {"family": row["family"]} | {name: row[name] for name in numbers if pandas.notna(row[name])} for row in rows}

@@ -93,7 +93,6 @@ def _scales(axes, n, values, label):
 
 
 def held_figure(held):
-    """Families left out: predicted over measured time of a step; what the choice costs."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6), gridspec_kw={"wspace": 0.25})
     rows = held[held.step_us.notna() & held.predicted_us.notna()] if len(held) else held
     if rows.empty:

@@ -42,7 +42,6 @@ def within(paired, first, second):
 
 
 def _of_scenes(timed):
-    """The variances of each scene's leaders."""
     for _, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
         paired = timing.Paired(group)
         pair = _leaders(paired)

@@ -3,7 +3,7 @@ from analysis.core.registry import ANCHOR
 from analysis.core.text import number
 from analysis.core.timing import PHASES, rank, ratio, student
 from analysis.map import paper
-from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, at_least, at_most, compared, factor, judged, of, row, unmeasured
+from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, at_least, at_most, compared, factor, judged, row, unmeasured
 from analysis.map.results import COVERED, Versus, with_samples
 
 FIGURES_END = 160    # variables; Figures 2 and 4 end here
@@ -103,7 +103,7 @@ def _share_of_speed(results, klu, cholmod):
     found = results.over_sizes(klu, cholmod, high=FIGURES_END, reaching=COVERED)
     if not found:
         return unmeasured(head, _needed("KLU and CHOLMOD"), rule, " %")
-    cases = [(f"n = {one.size:g}", [100 * value for value in of(one)], one.record) for one in found]
+    cases = [(f"n = {one.size:g}", [100 * value for value in one[:3]], one.record) for one in found]
     return judged(head, cases, rule, f"KLU ÷ {', '.join(dict.fromkeys(one.fast for one in found))}", " %")
 
 

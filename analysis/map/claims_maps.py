@@ -1,8 +1,7 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.ledger import (CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, of, row, summed,
-                                 unmeasured)
+from analysis.map.ledger import CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, row, summed, unmeasured
 
 F5_SIZE = 100        # variables; the nearest size counts that has enough filled scenes
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
@@ -31,7 +30,7 @@ def over_fill(results):
         head = "F5", f"at 100 variables {system} is faster than the best dense version at every fill", "> 1×"
         found = [results.best(scene, dense, names) for scene in scenes.index]
         lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
-        cases = [(f"{one.fill:.0f} %", of(one), one.record) for one in found if one]
+        cases = [(f"{one.fill:.0f} %", one[:3], one.record) for one in found if one]
         if size is None:
             rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
         elif lost or not cases:

@@ -56,7 +56,6 @@ def fastest(results, look, title, names, letters=13, line=2.1):
 
 
 def columns(cells):
-    """{size: its cells by ascending fill}."""
     return {size: list(mine) for size, mine in groupby(cells, key=lambda cell: cell.variables)}
 
 

@@ -91,7 +91,7 @@ def compared(head, found, rule, lacking=""):
     """A row of results.Versus of several sizes; without any it says what is `lacking`."""
     if not found:
         return unmeasured(head, lacking, rule)
-    return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,
+    return judged(head, [(f"n = {one.size:g}", one[:3], one.record) for one in found], rule,
                   ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)))
 
 
@@ -121,8 +121,3 @@ def told(table):
     for name, (one, _) in by_id(table).items():
         found.setdefault(one, []).append(name)
     return "; ".join(f"{one}: {', '.join(found[one])}" for one in VERDICTS if one in found)
-
-
-def of(ratio):
-    """(value, low, high)"""
-    return ratio.value, ratio.low, ratio.high

@@ -75,7 +75,6 @@ class Results:
         return rows[chosen & rows.fill_asked.isna()] if natural_only else rows[chosen]
 
     def natural(self, size):
-        """Name of a size's scene with its own fill."""
         return f"four-bar:{round(size) // 2 - 1}"
 
     @cached_property
@@ -98,7 +97,6 @@ class Results:
         return self.paired(scene).rank(names)
 
     def fastest(self, scene, names):
-        """The one of least time; None if nobody was timed."""
         found = self.rank(scene, names)
         return found.winner if found else None
 
@@ -109,7 +107,6 @@ class Results:
         return None if found.value != found.value else found
 
     def versus(self, scene, slow, fast):
-        """Versus of two contenders; None if they cannot be compared."""
         found = None if None in (slow, fast) or slow == fast else self.ratio(scene, slow, fast)
         if found is None:
             return None

@@ -21,7 +21,6 @@ QUESTION = ["constraints", "start", "steps", "step", "passes", "penalty", "toler
 
 
 def claims(results):
-    """All rows of the ledger; every claim has at least one."""
     return [row for claim in LEDGER for row in claim(results)]
 
 
@@ -59,7 +58,6 @@ def tidy(records):
 
 
 def _of(records, *roles):
-    """Rows of the processes of these roles."""
     return timing.processes([one for one in records if one.role in roles])
 
 

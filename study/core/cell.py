@@ -96,7 +96,6 @@ class Cell:
         return f"{self.program}@{build}" if build else self.program
 
     def document(self):
-        """As it stands in records."""
         found = asdict(self)
         found["contenders"] = [one.name for one in self.contenders]
         return found | {"environment": self.environment}

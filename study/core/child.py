@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from dataclasses import dataclass
+from collections import namedtuple
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
@@ -44,15 +44,8 @@ def end_on_signals():
             signal.signal(number, end)
 
 
-@dataclass(frozen=True)
-class Ended:
-    status: str  # "exited", "crashed", "timeout" or "out-of-memory"
-    reason: str
-    code: int | None
-    stdout: str
-    stderr: str  # its end
-    seconds: float
-    cpu_s: float  # processor time of it and of its children
+# status: "exited", "crashed", "timeout" or "out-of-memory"; code: None if it did not end; stderr: its end; cpu_s: of its children, too
+Ended = namedtuple("Ended", "status reason code stdout stderr seconds cpu_s")
 
 
 def run(command, seconds=None, memory_mb=None, alone=False):

@@ -28,7 +28,6 @@ def profile_folder(name):
 
 
 def dry_run(columns):
-    """Prints the jobs of these columns, and the node-hours of their budgets."""
     jobs = [(part, column, seconds) for part, names in columns.items() for column, seconds in names.items()]
     for part, column, seconds in jobs:
         print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")

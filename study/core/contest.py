@@ -105,5 +105,4 @@ def elsewhere(lab, cell):
 
 
 def about(lab, scenes):
-    """[the record of its description] of each scene."""
     return lab.run([Cell("describe", scene, role="about") for scene in scenes])

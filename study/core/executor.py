@@ -103,7 +103,6 @@ def differing(known, found, keys=FINGERPRINT):
 
 
 def need_same(known, found, what):
-    """StudyError naming the first thing in which two contexts differ."""
     if other := differing(known, found):
         key, mine, its = other
         raise StudyError(f"{what}: comes from another machine or build ({key} is '{its}', the set's is '{mine}'): "

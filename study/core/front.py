@@ -124,7 +124,6 @@ def _command(studyset):
 
 
 def _stop(process, ends):
-    """Ends the command and everything that it started here."""
     for sign in ends:
         if process.poll() is not None:
             return
@@ -134,7 +133,6 @@ def _stop(process, ends):
 
 
 def duration(seconds):
-    """The text "1 min 20 s"."""
     seconds = max(0, round(seconds))
     if seconds < 60:
         return f"{seconds} s"

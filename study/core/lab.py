@@ -70,7 +70,6 @@ class Lab:
         return [found[cell] for cell in cells]
 
     def skip(self, cell, status, reason):
-        """The record of a cell that is not run, with its reason."""
         cell = cell.settled()
         self._expect([cell])
         path = self._path(cell)
@@ -119,7 +118,6 @@ class Lab:
         return self._keep(records.read(self._path(cell), self._name(cell)))
 
     def _asked_of(self, cell):
-        """The context of a cell's environment."""
         return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
 
     def _expect(self, cells):

@@ -1,6 +1,6 @@
 # Profiles (study/profiles/NAME.yaml): how much of each part is run.
 import importlib
-from dataclasses import dataclass
+from collections import namedtuple
 
 import yaml
 
@@ -12,13 +12,8 @@ FOLDER = ROOT / "study" / "profiles"
 STARTED, DRAWN = 4.5, 0.015  # s around the columns of a part, about: its process and pages; for each second of theirs, the last cells
 
 
-@dataclass(frozen=True)
-class Profile:
-    name: str
-    title: str
-    blas: dict     # {folder or "all": BLAS and LAPACK pair}
-    dropped: str   # what a smaller budget leaves out, and why
-    parts: dict    # {part: its settings}
+# blas: {folder or "all": BLAS and LAPACK pair}; dropped: what a smaller budget leaves out, and why; parts: {part: its settings}
+Profile = namedtuple("Profile", "name title blas dropped parts")
 
 
 def names():
@@ -58,7 +53,6 @@ def read(path, name, chosen=None):
 
 
 def plan_of(part):
-    """The module study/PART/plan.py."""
     return importlib.import_module(f"study.{part}.plan")
 
 

@@ -83,7 +83,6 @@ def context_of(one):
 
 
 def listed():
-    """The Registry of the present build."""
     if not (ROOT / program_of()).exists():
         raise StudyError(f"{program_of()} is missing: build it with study/setup")
     found = executor.run(Cell("list").settled(), None)
@@ -265,7 +264,6 @@ def need_records(studyset):
 
 
 def need_tables(studyset):
-    """StudyError naming a table that was changed."""
     for part in studyset.facts["parts"]:
         need_unchanged(studyset.folder, part)
 

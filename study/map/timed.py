@@ -77,7 +77,6 @@ class TimedScene:
 
     @property
     def rankings(self):
-        """{layer: Ranking or None}"""
         scene = timed.Scene(timed_rows(self.records))
         return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
 
