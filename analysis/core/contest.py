@@ -2,16 +2,14 @@
 import math
 
 from analysis.core import timing
+from analysis.core.gather import gather
 from analysis.core.statistics import median
 from analysis.core.timing import PHASES
 
 
 def grouped(records):
     """{role: its records}; those of who was left out of a process are with the others."""
-    found = {}
-    for record in records:
-        found.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
-    return found
+    return gather((record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), record) for record in records)
 
 
 def contests(by_role, role):
@@ -39,9 +37,7 @@ def verdicts_of(records):
 
 
 def cells_of(rows, scene, verdicts):
-    groups = {}
-    for row in rows.to_dict("records"):
-        groups.setdefault(row["implementation"], []).append(row)
+    groups = gather((row["implementation"], row) for row in rows.to_dict("records"))
     return {name: _cell(groups[name], verdicts.get((scene, name))) for name in sorted(groups)}
 
 

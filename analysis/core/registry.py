@@ -3,6 +3,8 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 
+from analysis.core.gather import gather
+
 NULL = "null/null"  # the harness's control: a simulation that does nothing
 TWIN = "+twin"  # a second instance of a contender in the same process: what is told apart where nothing differs
 ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
@@ -73,9 +75,7 @@ class Registry:
     @property
     def coverage(self):
         """{terms and settings: names of the variants that serve just these}, beyond the paper's step on its own scenes; the most first."""
-        found = {}
-        for name, one in self.variants.items():
-            found.setdefault((*one.get("terms", []), *one.get("settings", [])), []).append(name)
+        found = gather(((*one.get("terms", []), *one.get("settings", [])), name) for name, one in self.variants.items())
         return dict(sorted(found.items(), key=lambda one: -len(one[0])))
 
     def serves(self, name, *settings):

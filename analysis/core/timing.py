@@ -16,6 +16,7 @@ import numpy
 import pandas
 from scipy import special  # scipy.stats has the same functions, a hundred times slower
 
+from analysis.core.gather import gather
 from analysis.core.registry import NULL, TWIN
 
 CONFIDENCE = 0.95
@@ -42,10 +43,7 @@ def counted(records):
     one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
     one alone do not count, nor do disturbed processes where most of their kind are not. Roles come without "-left-out"."""
     records = _calm([one for one in records if not one.role.endswith(ALONE)])
-    out, groups = {}, {}
-    for one in records:
-        chosen = out if one.role.endswith(LEFT_OUT) else groups
-        chosen.setdefault(_asked(one), []).append(one)
+    out, groups = (gather((_asked(one), one) for one in records if one.role.endswith(LEFT_OUT) == left) for left in (True, False))
     found = []
     for one in records:
         lost = {name for other in out.get(_asked(one), []) for name in other.cell["contenders"]}
@@ -58,9 +56,7 @@ def counted(records):
 
 def _calm(records):
     """Without disturbed processes, where most of the same question were calm."""
-    kinds = {}
-    for one in records:
-        kinds.setdefault((*_asked(one), one.role, *one.cell["contenders"]), []).append((disturbed(one), one))
+    kinds = gather(((*_asked(one), one.role, *one.cell["contenders"]), (disturbed(one), one)) for one in records)
     lost = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
     return [one for one in records if id(one) not in lost]
 
@@ -167,10 +163,7 @@ def ratio(rows, first, second):
 
 def by_layout(rows, logs):
     """Of `log_ratios` those of each layout's processes."""
-    found = {}
-    for number, value in logs.items():
-        found.setdefault(rows.layouts.get(number, number), []).append(value)
-    return list(found.values())
+    return list(gather((rows.layouts.get(number, number), value) for number, value in logs.items()).values())
 
 
 def student(values, more=0.0, of=1):

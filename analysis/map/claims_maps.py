@@ -1,4 +1,5 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
+from analysis.core.gather import gather
 from analysis.map import paper
 from analysis.map.cells import map_cells
 from analysis.map.ledger import CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, row, summed, unmeasured
@@ -72,10 +73,8 @@ def _region(results, figure, claim, cells, system):
         return row(head, UNMEASURED, f"{len(cells)} cells of this region were timed, {CELLS_NEEDED[figure]} are needed.", rule)
     if not names:
         return row(head, UNMEASURED, "No stand-in of this system was timed.", rule)
-    told, winners = {}, {}
-    for cell in cells:
-        told.setdefault(_cell(cell, names, system and paper.shared(results, system)), []).append(_place(cell))
-        winners.setdefault(cell.ranking.winner if cell.decided else "undecided", []).append(_place(cell))
+    told = gather((_cell(cell, names, system and paper.shared(results, system)), _place(cell)) for cell in cells)
+    winners = gather((cell.ranking.winner if cell.decided else "undecided", _place(cell)) for cell in cells)
     listed = "; ".join(f"{name}: {', '.join(found)}" for name, found in winners.items())
     return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
                f"Winners among the paper's systems: {listed}.") | {

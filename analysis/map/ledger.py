@@ -2,6 +2,7 @@
 import math
 from dataclasses import dataclass
 
+from analysis.core.gather import gather
 from analysis.core.text import bounded, number, rough
 
 CONFIRMED, EXCEEDED, REFUTED, UNDECIDED = "confirmed", "exceeded", "refuted", "undecided"
@@ -55,9 +56,7 @@ def summed(verdicts):
 def judged(head, cases, rule, where, unit="×"):
     """A row from what was measured at one or several sizes or fills, each judged alone. `head`: (id, claim, the paper's
     number); `cases`: [(place, (value, low, high) in `unit`, record)]; `where`: who was compared."""
-    told = {}
-    for place, (_, low, high), _ in cases:
-        told.setdefault(verdict(low, high, rule), []).append(place)
+    told = gather((verdict(low, high, rule), place) for place, (_, low, high), _ in cases)
     known = [bounded(low, high) for _, (_, low, high), _ in cases]
     values = sorted((value, (number if one else rough)(value)) for (_, (value, _, _), _), one in zip(cases, known))
     ends = ["", ""] if not all(known) else [number(min(low for _, (_, low, _), _ in cases)), number(max(high for _, (_, _, high), _ in cases))]
@@ -117,7 +116,5 @@ def by_id(table):
 
 def told(table):
     """"confirmed: F4, C4; mixed: T2": one verdict a claim."""
-    found = {}
-    for name, (one, _) in by_id(table).items():
-        found.setdefault(one, []).append(name)
+    found = gather((one, name) for name, (one, _) in by_id(table).items())
     return "; ".join(f"{one}: {', '.join(found[one])}" for one in VERDICTS if one in found)

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from analysis.core.files import ROOT, digest
+from analysis.core.gather import gather
 from analysis.core.registry import NULL, TWIN
 
 LAYOUT = "layouts/mbs-"  # `mbs` with its functions in other places: + seed
@@ -52,10 +53,7 @@ def control(registry, pairs):
 
 def by_environment(contenders):
     """{environment: its contenders, which processes may have in common}"""
-    found = {}
-    for one in contenders:
-        found[one.environment] = (*found.get(one.environment, ()), one)
-    return found
+    return {name: tuple(group) for name, group in gather((one.environment, one) for one in contenders).items()}
 
 
 @dataclass(frozen=True)
