@@ -7,7 +7,7 @@ from analysis.core.contest import agreed, by_scene, contests, grouped, ratio_to,
 from analysis.core.controls import controls
 from analysis.core.registry import TWIN
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import power_law_exponent, power_law_interval
+from analysis.core.statistics import power_law
 from analysis.families import defaults
 from analysis.families.rule import judged
 
@@ -74,10 +74,10 @@ def growth(scenes, mechanisms):
         sizes = known.loc[group.scene]
         if sizes.n.nunique() < LEAST:
             continue
-        exponent, low, high = power_law_interval(sizes.n.to_numpy(), group.step_us.to_numpy())
+        exponent, low, high = power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
         rows.append({"family": family, "scheme": scheme, "implementation": name, "sizes": len(group),
                      "least": sizes.n.min(), "most": sizes.n.max(), "exponent": exponent, "low": low, "high": high,
-                     "per_flop": power_law_exponent(sizes.flops.to_numpy(), group.step_us.to_numpy()),
+                     "per_flop": power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
                      "record": " ".join(dict.fromkeys(group.record))})
     return pandas.DataFrame(rows)
 

@@ -1,5 +1,5 @@
 # A contest on one scene: a look at everyone, the gate for those who are near the fastest, and the times of those who agree.
-from collections import Counter
+from collections import Counter, namedtuple
 from dataclasses import dataclass, replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
@@ -12,13 +12,8 @@ STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
 
 
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """Of the gate: whose motion agrees with the reference's on a scene. `settings`: of the step."""
-    scene: str
-    contenders: list
-    role: str = "gate"
-    settings: tuple = ()
+# Of the gate: whose motion agrees with the reference's on a scene. settings: of the step.
+Asked = namedtuple("Asked", "scene contenders role settings", defaults=("gate", ()))
 
 
 def verdicts(lab, asked, *, each, seconds=None, drop=False):
@@ -26,19 +21,19 @@ def verdicts(lab, asked, *, each, seconds=None, drop=False):
     else enough for all of it and the reference. Those of one environment share a process, which runs the reference once for all; if it
     ends early, its contenders are asked one by one, so that only who ended it is lost; not where it was out of time with enough for
     all of them, which is the reference's."""
-    cells = [(one, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
-                        seconds=seconds or each * (1 + len(one.contenders))))
-             for one in asked for group in by_environment(one.contenders).values()]
-    found = {one: {} for one in asked}
-    for (one, cell), record in zip(cells, lab.run([cell for _, cell in cells], drop)):
+    cells = [(place, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
+                          seconds=seconds or each * (1 + len(one.contenders))))
+             for place, one in enumerate(asked) for group in by_environment(one.contenders).values()]
+    found = [{} for _ in asked]
+    for (place, cell), record in zip(cells, lab.run([cell for _, cell in cells], drop)):
         group = cell.contenders
         slow_reference = record.status == "timeout" and cell.seconds >= each * (1 + len(group))
         if record.done or record.status == "dropped" or slow_reference or len(group) == 1:
-            found[one] |= {who: record.verdicts[who.name] for who in group}
+            found[place] |= {who: record.verdicts[who.name] for who in group}
         else:
-            for said in verdicts(lab, [replace(one, contenders=[who]) for who in group], each=each, seconds=seconds, drop=drop):
-                found[one] |= said
-    return list(found.values())
+            for said in verdicts(lab, [asked[place]._replace(contenders=[who]) for who in group], each=each, seconds=seconds, drop=drop):
+                found[place] |= said
+    return found
 
 
 def agreeing(lab, asked, **limits):

@@ -6,7 +6,7 @@ from textwrap import shorten
 import pandas
 from scipy.stats import gmean
 
-from analysis.core.text import between, bounded, ends, interval, number
+from analysis.core.text import between, bounded, ends, number
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
@@ -162,7 +162,7 @@ def differs(known):
     for one in found[:DIFFERING]:
         row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
         for there, ranking in zip(known.compared, one.machines):
-            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
+            others = [f"{name} {between(*ranking.ratios[name][:3])}" for name in dict.fromkeys(one.winners)
                       if name != ranking.winner and name in ranking.ratios]
             row[there.folder.name] = "; ".join([ranking.winner, *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
