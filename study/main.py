@@ -13,8 +13,7 @@ from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
 from study.core.profile import columns_of, planned
-from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
-                                 writable)
+from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished, writable)
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -41,8 +40,7 @@ def main(arguments):
         print(f"study/{command}: {error.filename or 'the system'}: {error.strerror}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as cause:
-        print("\ninterrupted; what is finished is kept. To resume:\n  "
-              + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
+        print("\ninterrupted; what is finished is kept. To resume:\n  " + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
         return 128 + (cause.number if isinstance(cause, child.Signalled) else signal.SIGINT)
 
 
@@ -51,8 +49,7 @@ def run(arguments):
                     epilog="Interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
     parser.add_argument("--profile", default="quick", help=f"how much: {', '.join(profiles.names())} (quick)")
     parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
-    parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION",
-                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION", help="only these implementations (folder or folder/variant)")
     parser.add_argument("--results", type=directory, metavar="DIR", help="results directory (results/local/PROFILE)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
     parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")

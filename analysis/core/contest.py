@@ -30,8 +30,7 @@ def by_scene(records):
 
 
 def verdicts_of(records):
-    """{(scene, implementation): (verdict, reason)} of the gate. Who was asked alone was so because a process of several
-    ended without verdicts."""
+    """{(scene, implementation): (verdict, reason)} of the gate. Who was asked alone was so because a process of several ended without verdicts."""
     return {(record.cell["scene"], name): found for record in sorted(records, key=lambda one: -len(one.cell["contenders"]))
             for name, found in record.verdicts.items()}
 

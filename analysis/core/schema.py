@@ -23,11 +23,9 @@ def read(path):
     """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
     found = yaml.safe_load(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
-        wrong = [name for name, one in columns.items()
-                 if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
+        wrong = [name for name, one in columns.items() if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
         if wrong or "record" not in columns:
-            raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are "
-                             f"{', '.join(TYPES)}")
+            raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are {', '.join(TYPES)}")
     return found
 
 
@@ -52,8 +50,7 @@ def conform(frame, columns, what):
 
 
 def write_tables(folder, part, tables, records):
-    """Writes the tables of a part into folder/PART and the digests of these and of the records; returns them as
-    the schema has them."""
+    """Writes the tables of a part into folder/PART and the digests of these and of the records; returns them as the schema has them."""
     schema = of_part(part)
     if set(tables) != set(schema):
         raise StudyError(f"analysis/{part}/tables.py makes {sorted(tables)}, its schema has {sorted(schema)}")
@@ -62,8 +59,7 @@ def write_tables(folder, part, tables, records):
     for name, columns in schema.items():
         found[name] = conform(tables[name], columns, f"{part}/{name}.csv")
         write(base / f"{name}.csv", lambda partial, table=found[name]: table.to_csv(partial, index=False))
-    write_json(base / DIGESTS, {"records": digest_of(records),
-                                "tables": {name: digest(base / f"{name}.csv") for name in found}})
+    write_json(base / DIGESTS, {"records": digest_of(records), "tables": {name: digest(base / f"{name}.csv") for name in found}})
     return found
 
 

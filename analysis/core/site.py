@@ -80,8 +80,7 @@ def _frame(folder, part):
 
 def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
-    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"number": number, "name": name, "code": code}
     environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)

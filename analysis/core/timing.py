@@ -1,10 +1,9 @@
 # Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast.
 #
-# In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the
-# ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory, and each of
-# the program's layouts (LAYOUTS, whose functions lie in other places) by where its code lies, as another build would. The
-# ratio is the mean of its logarithm over layouts, of each the mean over its processes, with Student's interval over layouts
-# [Kalibera and Jones 2013]: what a new build on a machine of this kind will show.
+# In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the ratio of two is the median over
+# samples of their quotient there. Processes differ by the layout of memory, and each of the program's layouts (LAYOUTS, whose functions lie in
+# other places) by where its code lies, as another build would. The ratio is the mean of its logarithm over layouts, of each the mean over its
+# processes, with Student's interval over layouts [Kalibera and Jones 2013]: what a new build on a machine of this kind will show.
 #
 # Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
@@ -93,8 +92,7 @@ def _rows(record):
                "layout": cell.get("program", ""), "status": status, "reason": reason, "record": record.name}
         if status == "ok":
             samples = [one / found["steps"] for one in found["cpu_us"]]
-            counters = {key: value for key, value in found.items()
-                        if isinstance(value, (int, float)) and key not in ("step_us", "iterations")}
+            counters = {key: value for key, value in found.items() if isinstance(value, (int, float)) and key not in ("step_us", "iterations")}
             row = counters | row | {"step_us": float(numpy.median(samples)), "low_us": min(samples), "high_us": max(samples),
                                     "samples": tuple(samples), "clock_us": float(numpy.median(found["stretch_us"])) / found["steps"]}
         yield row
@@ -124,9 +122,8 @@ NO_VARIANCE = (0.0, 1)
 
 
 class Paired:
-    """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it;
-    `ratio` and `rank` take the rows themselves as well. `beyond`: a variance of the logarithm of a ratio that more processes do not
-    lessen, and its degrees of freedom."""
+    """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it; `ratio` and `rank` take the
+    rows themselves as well. `beyond`: a variance of the logarithm of a ratio that more processes do not lessen, and its degrees of freedom."""
 
     def __init__(self, rows, beyond=NO_VARIANCE):
         self.beyond = beyond
@@ -177,8 +174,7 @@ def student(values, more=0.0, of=1):
 
 
 def log_ratios(rows, first, second):
-    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that
-    both environments have."""
+    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that both environments have."""
     logs = paired(rows).logs
     mine, other = (logs.get(name, {}) for name in (first, second))
     direct = {key[1]: _median(mine[key], other[key]) for key in sorted(set(mine) & set(other))}
@@ -231,8 +227,7 @@ class Ranking:
     @property
     def open(self):
         """Those of whom neither is shown: not that they are slower, not that they are as fast."""
-        return tuple(name for name, one in self.ratios.items()
-                     if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
+        return tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
 
     @property
     def settled(self):
@@ -258,11 +253,9 @@ def rank(rows, names=None):
     while True:  # they may share other processes with the winner than with the first
         ratios = {name: Ratio(1.0, 1.0, 1.0) if name == winner else ratio(rows, name, winner) for name in order}
         # Who shares no process with the winner is compared through the first, and nothing is claimed of it.
-        ratios = {name: Ratio(to_first[name] / to_first[winner], 0.0, math.inf) if math.isnan(one.value) else one
-                  for name, one in ratios.items()}
+        ratios = {name: Ratio(to_first[name] / to_first[winner], 0.0, math.inf) if math.isnan(one.value) else one for name, one in ratios.items()}
         tried.add(winner)
-        faster = min((name for name in order if name not in tried and ratios[name].value < 1),
-                     key=lambda name: ratios[name].value, default=None)
+        faster = min((name for name in order if name not in tried and ratios[name].value < 1), key=lambda name: ratios[name].value, default=None)
         if faster is None:
             return Ranking(winner, by_time(winner, ratios))
         winner = faster

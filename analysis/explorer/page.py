@@ -16,8 +16,7 @@ MOST = 200  # processes of an interval
 
 
 def context(folder):
-    """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the
-    address, answer)."""
+    """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the address, answer)."""
     sets = {one: data.read(one) for one in (folder, *others(folder))}
     names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
     number = {name: place for place, name in enumerate(names)}

@@ -1,8 +1,7 @@
 # A rule to apply by hand: at most three cases in each form of the step, in two numbers that `mbs describe` prints.
 #
-# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other.
-# Limits and libraries are those of the least cost, the limits as round as they may be. Judged on families left out, as rule.py is;
-# but which two numbers was chosen with a look at that.
+# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other. Limits and libraries are those of the
+# least cost, the limits as round as they may be. Judged on families left out, as rule.py is; but which two numbers was chosen with a look at that.
 from itertools import permutations
 
 import numpy
@@ -14,8 +13,7 @@ EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 
 def table(data, worth, unknown):
-    """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the
-    cost of who has none."""
+    """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the cost of who has none."""
     rows = []
     for scheme, losses in data.losses.items():
         chosen = {}

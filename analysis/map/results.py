@@ -112,8 +112,7 @@ class Results:
             return None
         rows = self.rows(scene)
         record = next(iter(rows[(rows.implementation == slow) & (rows.status == "ok")].record), "")
-        return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]),
-                      float(rows.fill_percent.iloc[0]), record)
+        return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]), float(rows.fill_percent.iloc[0]), record)
 
     def best(self, scene, slow, fast):
         """Versus of the fastest of the names `slow` and the fastest of the names `fast`."""

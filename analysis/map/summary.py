@@ -26,10 +26,9 @@ def span(group):
 
 
 def dense_from(results):
-    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those
-    at and above which the best dense library is faster than the best sparse one (None: at none), "last_sparse" the last
-    fill with another outcome (None: at none), "between" the first and last fill at which dense is faster if it is not up
-    to the last one (or None)."""
+    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those at and above which the
+    best dense library is faster than the best sparse one (None: at none), "last_sparse" the last fill with another outcome (None: at none),
+    "between" the first and last fill at which dense is faster if it is not up to the last one (or None)."""
     rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results, others=True)])
     for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
         found = [(cell.fill_percent, results.best(cell.scene, paper.dense(results), paper.sparse(results, others=True)))

@@ -15,8 +15,7 @@ from analysis.map.results import Results, with_samples
 from analysis.map.timed import AFTER, timed_rows
 
 # The claims ledger: each claim of the paper with our figure, its interval and a computed verdict; in the order of the rows.
-LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse, tuned_blas, sparse_against_dense,
-          over_fill, regions, compilers)
+LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse, tuned_blas, sparse_against_dense, over_fill, regions, compilers)
 QUESTION = ["constraints", "start", "steps", "step", "passes", "penalty", "tolerance", "fill_seed", "record"]
 
 

@@ -92,5 +92,4 @@ def end_jobs(folder, cluster):
 
 
 def runs(folder, cluster, job):
-    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True,
-                          check=False).stdout.strip() == "running"
+    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True, check=False).stdout.strip() == "running"

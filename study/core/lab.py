@@ -42,9 +42,8 @@ class Lab:
         return self.run([cell])[0]
 
     def run(self, cells, drop=False):
-        """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the
-        others run at once on all cores. With `drop`, what is left when the budget is spent gets a record that says
-        so: order cells by their worth."""
+        """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the others run at once on all cores.
+        With `drop`, what is left when the budget is spent gets a record that says so: order cells by their worth."""
         cells = [cell.settled() for cell in cells]
         self._expect(cells)
         found, todo, known, before = {}, [], set(self.names), self.spent

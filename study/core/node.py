@@ -104,8 +104,7 @@ def another(studyset, context):
 
 
 def uncontrolled(studyset):
-    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not. StudyError where it
-    does not run."""
+    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not. StudyError where it does not run."""
     from analysis.core.timing import processes, ratio  # needs pandas
     from study.core.timing import LAYOUTS
     one = studyset.contenders[0]

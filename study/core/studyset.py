@@ -129,8 +129,7 @@ def need_own(folder, begun=BEGUN):
         return
     names = {path.name for path in folder.iterdir() if not path.name.startswith(".partial-")}
     if names and (".lock" not in names or not names <= begun):
-        raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, "
-                         "or an empty one")
+        raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, or an empty one")
 
 
 def writable(folder):
@@ -199,8 +198,7 @@ def _other(folder, what):
 
 
 def select(registry, only, option="--only: "):
-    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples. `option`: how they
-    were asked for."""
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples. `option`: how they were asked for."""
     folders = {entry["folder"]: entry for entry in registry.entries}
     for name in only:
         entry = folders.get(name.split("/")[0])
@@ -209,10 +207,8 @@ def select(registry, only, option="--only: "):
         if entry and name in entry.get("lacking", {}):
             raise StudyError(f"{option}{name} is unavailable: {entry['lacking'][name]}")
         if name not in folders and name not in registry.variants:
-            raise StudyError(f"{option}unknown implementation '{name}'; known: "
-                             f"{', '.join([*folders, *registry.variants])}")
-    return [name for name in registry.variants
-            if name in only or name.split("/")[0] in only or not only and name not in registry.examples]
+            raise StudyError(f"{option}unknown implementation '{name}'; known: {', '.join([*folders, *registry.variants])}")
+    return [name for name in registry.variants if name in only or name.split("/")[0] in only or not only and name not in registry.examples]
 
 
 def finish(studyset, part, column, names):

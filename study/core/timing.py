@@ -16,8 +16,7 @@ def measure(lab, scene, contenders, *, processes, repetitions, settings=(), role
     groups = by_environment(contenders)
     words = (*settings, f"--benchmark_repetitions={repetitions}")
     main = max(groups, key=lambda name: len(groups[name]), default=None)
-    common = next((one for one in groups.get(main, []) if one.variant == ANCHOR), None) or next(
-        iter(groups.get(main, [])), None)
+    common = next((one for one in groups.get(main, []) if one.variant == ANCHOR), None) or next(iter(groups.get(main, [])), None)
     found = []
     for name, group in groups.items():
         if name != main and common.variant not in [one.variant for one in group]:
@@ -36,8 +35,7 @@ def _environment(lab, cell, processes):
         while number < processes or _again(found, processes):
             number += 1
             program = cell.program if cell.contenders[0].build else f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
-            record = lab.run([replace(cell, number=number, program=program,
-                                      settings=(*cell.settings, "--seed", number))], drop=True)[0]
+            record = lab.run([replace(cell, number=number, program=program, settings=(*cell.settings, "--seed", number))], drop=True)[0]
             found.append(record)
             if record.status == "dropped":
                 return [*lost, *found]
@@ -46,8 +44,7 @@ def _environment(lab, cell, processes):
         else:
             return [*lost, *found]
         culprits = _culprits(lab, cell, record)
-        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), status, reason)
-                 for one, status, reason in culprits]
+        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), status, reason) for one, status, reason in culprits]
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
     return lost

@@ -64,8 +64,7 @@ def _unavailable(lab, scene):
     """A record for each implementation that cannot take part at all."""
     for entry in lab.registry.entries:
         if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
-            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"),
-                     "unavailable", entry["reason"])
+            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"), "unavailable", entry["reason"])
 
 
 def _seeds(lab, timed):

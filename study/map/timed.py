@@ -1,9 +1,8 @@
 # A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed.
 #
-# Rough pilots are a few steps from the start. Who is slower than the fastest library by more than the profile's factor is
-# excluded: neither checked nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast
-# one excludes nobody, and code of our own never excludes anybody. In filled scenes the two fastest of each family stay
-# within FAMILY times that factor: maps are drawn for families too.
+# Rough pilots are a few steps from the start. Who is slower than the fastest library by more than the profile's factor is excluded: neither checked
+# nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast one excludes nobody, and code of our own never excludes
+# anybody. In filled scenes the two fastest of each family stay within FAMILY times that factor: maps are drawn for families too.
 #
 # A few processes of all are timed, without those whose stretch takes another number of passes, and then more of those who lead.
 import math
@@ -83,8 +82,7 @@ class TimedScene:
     def processes(self, contenders, count, role):
         """Their records. The pilots decide how many samples fill a process, never what a sample is."""
         lab, limit = self.lab, self.lab.settings["limits"]["time"]
-        sample = max(TURN * len(contenders),
-                     1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
+        sample = max(TURN * len(contenders), 1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
         samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
         return measure(lab, self.scene.name, contenders, processes=count, role=role, repetitions=samples,
                        seconds=limit, settings=("--patience", limit / 10))
@@ -102,8 +100,7 @@ class Pilot:
 
 
 def fit(lab, scene, contenders):
-    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
-    that says why not."""
+    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record that says why not."""
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
     verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
@@ -141,10 +138,8 @@ class Rule:
 
     def best(self, verdicts):
         """Least time of the ranked ones that are not rejected; of the libraries, unless there is nobody else."""
-        alive = {one: pilot.step_us for one, pilot in self.pilots.items()
-                 if pilot.alive and one.ranked and verdicts.get(one, True)}
-        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own]
-                   or alive.values(), default=math.inf)
+        alive = {one: pilot.step_us for one, pilot in self.pilots.items() if pilot.alive and one.ranked and verdicts.get(one, True)}
+        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own] or alive.values(), default=math.inf)
 
     def chosen(self, verdicts):
         known, filled = self.lab.settings["slower"], self.scene.fill is not None
@@ -164,8 +159,7 @@ def alternatives(lab, scene):
     """Contenders of the profile's other pairs at this size; what is missing gets a record that says why."""
     found = {}
     for entry in lab.settings["alternatives"]:
-        usual = [one for one in lab.contenders if one.variant in entry["implementations"]
-                 or one.variant.split("/")[0] in entry["implementations"]]
+        usual = [one for one in lab.contenders if one.variant in entry["implementations"] or one.variant.split("/")[0] in entry["implementations"]]
         for one in usual if scene.variables in entry["columns"] else []:
             for pair in entry["blas"]:
                 if pair != one.blas:
