@@ -69,20 +69,14 @@ def digest_of(records):
 
 def records_of(folder, part, context):
     """All records of a part, by name; StudyError naming a table that was changed, a record that was or that is of another machine or
-    commit than the set's `context`."""
+    commit than the set's `context`, or if those of a stored set are not those that its tables were made of."""
     need_unchanged(folder, part)
-    found = read_part(folder, part)
-    need_same_records(folder, part, found)
+    found, archive, kept = read_part(folder, part), archive_of(folder, part), Path(folder) / part / DIGESTS
+    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(found):
+        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
     for record in found:
         need_same_origin(record, context, f"{folder}/raw/{part}")
     return found
-
-
-def need_same_records(folder, part, records):
-    """StudyError if a stored set's records are not those that its tables were made of."""
-    archive, kept = archive_of(folder, part), Path(folder) / part / DIGESTS
-    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(records):
-        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
 
 
 def read_table(folder, part, name):

@@ -62,17 +62,11 @@ class Look:
         mixed = numpy.array(to_rgb(base)) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
 
-    def marker(self, name):
-        return MARKERS[self.place[name] % len(MARKERS)]
-
-    def dash(self, name):
-        return DASHES[self.shade[name] % len(DASHES)]
-
     def line(self, name):
         """Keywords of `plot` for the series of an implementation."""
-        return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4, "marker": self.marker(name),
-                "markersize": 8 if self.marker(name) in "*PX" else 5.5, "markeredgewidth": 0.6, "markerfacecolor": self.colour(name),
-                "markeredgecolor": "white"}
+        colour, marker, dash = self.colour(name), MARKERS[self.place[name] % len(MARKERS)], DASHES[self.shade[name] % len(DASHES)]
+        return {"color": colour, "linestyle": dash, "linewidth": 1.4, "marker": marker, "markersize": 8 if marker in "*PX" else 5.5,
+                "markeredgewidth": 0.6, "markerfacecolor": colour, "markeredgecolor": "white"}
 
 
 def panels(count, columns, wide, high):

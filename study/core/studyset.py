@@ -237,14 +237,10 @@ def reopen(studyset, columns):
 
 def _there_now(studyset, stamp):
     """Paths of a column's records of programs that were not there, and are now."""
-    base, found = studyset.folder / "raw" / stamp.parent.name, []
-    for name in read_object(stamp) if stamp.exists() else ():
-        path = base / name
-        record = records.read(path, name) if path.exists() else None
-        program = record and record.status == "unavailable" and record.cell["program"]
-        if program and program != "mbs" and (ROOT / program_of(program)).exists():
-            found.append(path)
-    return found
+    known = read_object(stamp) if stamp.exists() else ()
+    there = {name: path for name, path in records.files_of(studyset.folder, stamp.parent.name, stamp.name).items() if name in known}
+    lacking = {path: one.cell["program"] for name, path in there.items() for one in [records.read(path, name)] if one.status == "unavailable"}
+    return [path for path, program in lacking.items() if program != "mbs" and (ROOT / program_of(program)).exists()]
 
 
 def _empty(page):
@@ -254,8 +250,7 @@ def _empty(page):
 def need_records(studyset):
     """StudyError naming a record of a finished column that is missing or was changed."""
     for stamp in sorted((studyset.folder / ".done").glob("*/[!.]*")):
-        missing = _missing(studyset, stamp)
-        if missing:
+        if missing := _missing(studyset, stamp):
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")
 
 
@@ -266,15 +261,11 @@ def need_tables(studyset):
 
 def _missing(studyset, stamp):
     """Paths of a column's records that are not there; StudyError naming one that was changed or added."""
-    found, known = [], read_object(stamp)
-    for name, path in records.files_of(studyset.folder, stamp.parent.name, stamp.name).items():
+    known, there = read_object(stamp), records.files_of(studyset.folder, stamp.parent.name, stamp.name)
+    for name, path in there.items():
         if name not in known:
             raise StudyError(f"{path} is no record of this study: remove it")
-    for name, kept in known.items():
-        path = studyset.folder / "raw" / stamp.parent.name / name
-        if not path.exists():
-            found.append(path)
-        elif digest(path) != kept:
+        if digest(path) != known[name]:
             records.read(path, name)  # says what is wrong with it
             raise StudyError(f"{path} is not the one that was measured: restore it, or remove it to have it measured again")
-    return found
+    return [studyset.folder / "raw" / stamp.parent.name / name for name in known if name not in there]
