@@ -10,6 +10,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.transforms import Bbox
 
 from analysis.core.files import write
+from analysis.core.gather import gather
 from analysis.core.text import number
 
 # Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
@@ -43,23 +44,18 @@ register_scale(_Log)
 
 
 class Look:
-    """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker of its own; a dash a variant."""
+    """How each implementation is drawn, by its place in the registry: a colour a folder, a shade of it and a dash a variant; its own marker."""
 
     def __init__(self, registry):
-        self.place, self.shade, self.hue = {}, {}, {}
-        palettes = {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
-        for name in registry.variants:
-            folder = name.split("/")[0]
-            if folder not in self.hue:
-                self.hue[folder] = next(palettes[name in registry.dense])
-            self.place[name] = len(self.place)
-            self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
+        self.place = {name: place for place, name in enumerate(registry.variants)}
+        self.shade, self.hue, palettes = {}, {}, {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
+        for folder, names in gather((name.split("/")[0], name) for name in registry.variants).items():
+            self.hue[folder] = next(palettes[names[0] in registry.dense])
+            self.shade |= {name: shade for shade, name in enumerate(names)}
 
     def colour(self, name):
-        base, shade = self.hue[name.split("/")[0]], self.shade[name]
-        towards, share = SHADES[shade % len(SHADES)]
-        mixed = numpy.array(to_rgb(base)) * (1 - share)
+        towards, share = SHADES[self.shade[name] % len(SHADES)]
+        mixed = numpy.array(to_rgb(self.hue[name.split("/")[0]])) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
 
     def line(self, name):

@@ -3,7 +3,7 @@ from analysis.core.registry import ANCHOR
 from analysis.core.text import number
 from analysis.core.timing import PHASES, rank, ratio, student
 from analysis.map import paper
-from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, at_least, at_most, compared, factor, judged, row, unmeasured
+from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, compared, factor, judged, row, unmeasured
 from analysis.map.results import COVERED, Versus, with_samples
 
 FIGURES_END = 160    # variables; Figures 2 and 4 end here
@@ -93,7 +93,7 @@ def _needed(pair):
 def _fastest(results, klu, others, low, high):
     span = f"to {high} variables" if low == 0 else f"from {low} to {high} variables"
     found = results.over_sizes(others, klu, low, high, COVERED)
-    return compared(("F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"), found, at_least(1),
+    return compared(("F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"), found, Rule(low=1),
                     f"KLU and another of the paper's solvers were not both timed at {max(low, COVERED)} variables or more.")
 
 
@@ -111,8 +111,8 @@ def _behind(results, slow_system, slow, fast_system, fast):
     head = "F4", f"{slow_system} is slower than {fast_system}", "slower"
     both = sorted(set(slow) & set(fast))
     if any(results.fastest(results.natural(size), slow) in both for size in results.sizes if size <= FIGURES_END):
-        return row(head, INCOMPARABLE, f"{', '.join(both)} stands for both, and is {slow_system}'s fastest stand-in.", at_least(1).text("×"))
-    return compared(head, results.over_sizes(slow, fast, high=FIGURES_END, reaching=COVERED), at_least(1),
+        return row(head, INCOMPARABLE, f"{', '.join(both)} stands for both, and is {slow_system}'s fastest stand-in.", Rule(low=1).text("×"))
+    return compared(head, results.over_sizes(slow, fast, high=FIGURES_END, reaching=COVERED), Rule(low=1),
                     _needed(f"{slow_system}'s and {fast_system}'s stand-ins"))
 
 
@@ -126,7 +126,7 @@ def pivoting(results):
 
 
 def _stale_pivots(results, klu, full):
-    head, rule = ("C1", "stale pivots may accumulate error when entries change violently", "may"), at_least(ERROR_GROWS)
+    head, rule = ("C1", "stale pivots may accumulate error when entries change violently", "may"), Rule(low=ERROR_GROWS)
     errors = results.samples().groupby(["implementation", "scene"]).position_error.median()
     if klu not in errors.index or full not in errors.index:
         return unmeasured(head, f"{klu} and {full} were not both timed.", rule)
@@ -160,9 +160,9 @@ def dense_pairs(results):
         pairs = results.alternatives(variant).groupby("implementation").blas.first()
         found = results.over_sizes(list(pairs.index[pairs == "reference"]), list(pairs.index[pairs != "reference"]), COVERED, FIGURES_END)
         if found:
-            rows.append(compared(("F2", f"{claim}: {variant}", "faster"), found, at_least(1)))
+            rows.append(compared(("F2", f"{claim}: {variant}", "faster"), found, Rule(low=1)))
     return [first, *(rows or [unmeasured(("F2", claim, "faster"), "No optimised dense version was timed on the reference pair and on another "
-                                         f"at {COVERED} to {FIGURES_END} variables.", at_least(1))])]
+                                         f"at {COVERED} to {FIGURES_END} variables.", Rule(low=1))])]
 
 
 def tuned_blas(results):
@@ -173,14 +173,14 @@ def tuned_blas(results):
         found = results.over_sizes([name], [f"{name}+reference"], reaching=COVERED) if name != ANCHOR and usual != "reference" else []
         cases = [(f"n = {one.size:g}", [100 * (1 - value) for value in (one.value, one.high, one.low)], one.record) for one in found]
         if cases:
-            rows.append(judged(("C3", f"{claim}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {usual} against reference", " %"))
+            rows.append(judged(("C3", f"{claim}: {name}", "2-3 %"), cases, Rule(high=TUNED_GAIN), f"{name} on {usual} against reference", " %"))
     return rows or [unmeasured(("C3", claim, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
-                               f"{COVERED} variables or more.", at_most(TUNED_GAIN), " %")]
+                               f"{COVERED} variables or more.", Rule(high=TUNED_GAIN), " %")]
 
 
 def compilers(results):
     """C5. What the study is not run with: other compilers and flags, which take minutes to build, and other operating systems."""
     return [unmeasured(("C5", f"the {what} matters an order of magnitude less than the linear algebra", "≤ 10 %"), reason,
-                       at_most(ORDER_OF_MAGNITUDE), " %")
+                       Rule(high=ORDER_OF_MAGNITUDE), " %")
             for what, reason in (("compiler", "No variant was timed in builds of several compilers."),
                                  ("operating system", "The study runs on one operating system."))]

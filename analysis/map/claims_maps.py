@@ -2,7 +2,7 @@
 from analysis.core.gather import gather
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.ledger import CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, row, summed, unmeasured
+from analysis.map.ledger import CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, Rule, by_place, judged, row, summed, unmeasured
 
 F5_SIZE = 100        # variables; the nearest size counts that has enough filled scenes
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
@@ -33,12 +33,12 @@ def over_fill(results):
         lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
         cases = [(f"{one.fill:.0f} %", one[:3], one.record) for one in found if one]
         if size is None:
-            rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
+            rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", Rule(low=1)))
         elif lost or not cases:
             text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
-            rows.append(unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1)))
+            rows.append(unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", Rule(low=1)))
         else:
-            rows.append(judged(head, cases, at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}"))
+            rows.append(judged(head, cases, Rule(low=1), f"n = {size:g}, best dense ÷ {', '.join(names)}"))
     return rows
 
 

@@ -26,14 +26,6 @@ class Rule:
         return f"{number(self.low)} to {number(self.high)}{unit}" + (", above it exceeded" if self.beyond == EXCEEDED else "")
 
 
-def at_least(bound):
-    return Rule(low=bound)
-
-
-def at_most(bound):
-    return Rule(high=bound)
-
-
 def factor(low, high=None):
     """The paper says that something is so many times faster or slower, or from `low` to `high` times."""
     return Rule(low / FACTOR_BAND, (high or low) * FACTOR_BAND, EXCEEDED)

@@ -10,8 +10,7 @@ from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, spar
                                  tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
 from analysis.map.tables import claims
-from analysis.map.ledger import (CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, at_least, at_most,
-                                 factor, verdict)
+from analysis.map.ledger import CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, factor, verdict
 from analysis.tests.map_tables import cell, failed, operation, phases, results
 
 KLU, FACTOR, SIMPLICIAL = "csc_klu/refactor", "csc_klu/factor", "csc_cholmod/simplicial"
@@ -46,15 +45,15 @@ def outcome(rows, *words):
 
 
 @pytest.mark.parametrize("low, high, rule, expected", [
-    (3, 4, at_least(3), CONFIRMED), (2, 2.9, at_least(3), REFUTED), (2, 4, at_least(3), UNDECIDED),
-    (1, 2, at_most(2), CONFIRMED), (2.1, 3, at_most(2), REFUTED), (40, 60, Rule(30, 50), UNDECIDED),
+    (3, 4, Rule(low=3), CONFIRMED), (2, 2.9, Rule(low=3), REFUTED), (2, 4, Rule(low=3), UNDECIDED),
+    (1, 2, Rule(high=2), CONFIRMED), (2.1, 3, Rule(high=2), REFUTED), (40, 60, Rule(30, 50), UNDECIDED),
     (35, 45, Rule(30, 50), CONFIRMED), (51, 60, Rule(30, 50), REFUTED), (1.7, 3.7, factor(2, 3), CONFIRMED),
     (4.2, 4.6, factor(2, 3), EXCEEDED), (3.7, 4.6, factor(2, 3), UNDECIDED), (1.2, 1.5, factor(2, 3), REFUTED)])
 def test_verdict_needs_the_whole_interval(low, high, rule, expected):
     assert verdict(low, high, rule) == expected
 
 
-def judged(*cases, rule=at_least(3)):
+def judged(*cases, rule=Rule(low=3)):
     return ledger.judged(("X", "", ""), [(f"n = {size}", interval, f"r{size}") for size, interval in cases], rule, "a ÷ b")
 
 
