@@ -7,6 +7,8 @@ from itertools import permutations
 import numpy
 import pandas
 
+from analysis.core.gather import gather
+
 NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("dense", "rows")}
 SHOWN = ("per_column", "dense", "rows")
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
@@ -17,8 +19,7 @@ def table(data, worth, unknown):
     rows = []
     for scheme, losses in data.losses.items():
         chosen = {}
-        for family in dict.fromkeys(data.family[scene] for scene in losses.index):
-            left = [scene for scene in losses.index if data.family[scene] == family]
+        for family, left in gather((data.family[scene], scene) for scene in losses.index).items():
             for where, name in _cases(data.without(family), scheme, worth, unknown):
                 chosen |= dict.fromkeys(_inside(where, data.features.loc[left]), name)
         for where, name in _cases(data, scheme, worth, unknown):
@@ -85,7 +86,4 @@ def _parted(where, number, at, below, above):
 
 
 def _inside(where, features):
-    there = pandas.Series(True, features.index)
-    for number, (low, high) in where.items():
-        there &= (features[number] >= low) & (features[number] < high)
-    return list(features.index[there])
+    return list(features.index[numpy.all([features[number].between(*ends, inclusive="left") for number, ends in where.items()], axis=0)])

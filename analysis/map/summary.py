@@ -66,6 +66,6 @@ def prices(results, names):
 def settled(table, layer):
     """{"cells", "decided", "holm", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
     rows = table[(table.layer == layer) & (table.winner != "")]
-    decided, settled = rows.decided.fillna(False).astype(bool), rows.settled.fillna(False).astype(bool)
-    return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(rows.holm.fillna(False).astype(bool).sum()), "equivalent": int((settled & ~decided).sum()),
+    decided, settled, holm = (rows[name].fillna(False).astype(bool) for name in ("decided", "settled", "holm"))
+    return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(holm.sum()), "equivalent": int((settled & ~decided).sum()),
             "open": int((~settled & ~decided).sum())}

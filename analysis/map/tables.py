@@ -75,10 +75,9 @@ def _rejected(records):
     """A row for each verdict of the gate that is not "agrees", and for each gate that ended without one."""
     for one, cell in ((one, one.cell) for one in records if one.role == "gate"):
         for name, (status, reason) in one.verdicts.items():
-            if status == "agrees" or not one.done and len(cell["contenders"]) > 1:
-                continue  # one by one they are checked again
-            yield {"scene": cell["scene"], "implementation": name, "environment": cell["environment"], "status": status,
-                   "reason": reason, "record": one.name}
+            if status != "agrees" and (one.done or len(cell["contenders"]) == 1):  # else one by one they are checked again
+                yield {"scene": cell["scene"], "implementation": name, "environment": cell["environment"], "status": status,
+                       "reason": reason, "record": one.name}
 
 
 def _operations(records):
