@@ -14,10 +14,7 @@ ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of 
 class Registry:
     listed: dict  # as printed
 
-    @property
-    def entries(self):
-        """Folders with their variants, the unavailable ones too."""
-        return self.listed["implementations"]
+    entries = property(lambda self: self.listed["implementations"])  # folders with their variants, the unavailable ones too
 
     @cached_property
     def variants(self):

@@ -201,13 +201,8 @@ class Ranking:
     winner: str
     ratios: dict
 
-    @property
-    def second(self):
-        return next((name for name in self.ratios if name != self.winner), None)
-
-    @property
-    def margin(self):
-        return self.ratios.get(self.second, NONE)
+    second = property(lambda self: next((name for name in self.ratios if name != self.winner), None))
+    margin = property(lambda self: self.ratios.get(self.second, NONE))
 
     @property
     def decided(self):
@@ -229,10 +224,7 @@ class Ranking:
         """Those of whom neither is shown: not that they are slower, not that they are as fast."""
         return tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
 
-    @property
-    def settled(self):
-        """Whether it is said of each whether it is as fast as the winner."""
-        return not self.open
+    settled = property(lambda self: not self.open)  # whether it is said of each whether it is as fast as the winner
 
 
 def by_time(winner, ratios):

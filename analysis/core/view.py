@@ -29,9 +29,7 @@ class Folder:
     def facts(self):
         return facts_of(self.folder)
 
-    @property
-    def context(self):
-        return self.facts["context"]
+    context = property(lambda self: self.facts["context"])
 
     @cached_property
     def registry(self):

@@ -40,9 +40,7 @@ class Contest:
     rank: Callable
     beyond: tuple = timing.NO_VARIANCE
 
-    @property
-    def family(self):
-        return family_of(self.scene)
+    family = property(lambda self: family_of(self.scene))
 
 
 def of_families(folder):

@@ -207,9 +207,7 @@ class _Data:
             self.losses[scheme], self.known_by[scheme] = _losses(best.div(best.min(axis=1), axis=0).sub(1.0), status, shapes)
         self.family = {scene: known.family[scene] for losses in self.losses.values() for scene in losses.index}
 
-    @property
-    def records(self):
-        return " ".join(self.record[scene] for scene in self.family)
+    records = property(lambda self: " ".join(self.record[scene] for scene in self.family))
 
     def without(self, family):
         rest = object.__new__(_Data)

@@ -25,13 +25,8 @@ class Cell:
         """Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten."""
         return bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed))
 
-    @property
-    def settled(self):
-        return bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed))
-
-    @property
-    def outcome(self):
-        return "decided" if self.decided else "equivalent" if self.settled else "open"
+    settled = property(lambda self: bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed)))
+    outcome = property(lambda self: "decided" if self.decided else "equivalent" if self.settled else "open")
 
     @property
     def winners(self):

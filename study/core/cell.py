@@ -21,14 +21,8 @@ class Contender:
     blas: str = SYSTEM
     build: str = ""  # "" is the study's own
 
-    @property
-    def ranked(self):
-        return "+" not in self.name
-
-    @property
-    def environment(self):
-        """What its processes share with those of others."""
-        return f"{self.build or 'own'}|{self.blas}"
+    ranked = property(lambda self: "+" not in self.name)
+    environment = property(lambda self: f"{self.build or 'own'}|{self.blas}")  # what its processes share with those of others
 
 
 CONTROL = Contender(NULL, NULL)
@@ -78,14 +72,8 @@ class Cell:
         return replace(self, settings=tuple(map(str, self.settings)),
                        inputs=digest(path)[:12] if self.scene.endswith(".json") and path.exists() else "")
 
-    @property
-    def environment(self):
-        return self.contenders[0].environment if self.contenders else "own|system"
-
-    @property
-    def own(self):
-        """Whether its program is `mbs`, in whatever layout."""
-        return self.program == "mbs" or self.program.startswith(LAYOUT)
+    environment = property(lambda self: self.contenders[0].environment if self.contenders else "own|system")
+    own = property(lambda self: self.program == "mbs" or self.program.startswith(LAYOUT))  # whether its program is `mbs`, in whatever layout
 
     @property
     def built(self):

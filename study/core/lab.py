@@ -93,10 +93,7 @@ class Lab:
         """Leaves what there is to say where the front looks for it."""
         write_json(self.set.progress, {"part": self.part, "column": self.column, "cells": cells, "text": text})
 
-    @property
-    def left(self):
-        """Seconds of the budget, counted by the records: the same in a run that was resumed."""
-        return self.budget - self.spent
+    left = property(lambda self: self.budget - self.spent)  # seconds of the budget, counted by the records: the same in a run that was resumed
 
     def _made(self, cell, drop):
         program = program_of(*cell.built.split("@"))

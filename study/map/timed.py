@@ -30,14 +30,9 @@ class Scene:
     variables: int
     fill: float | None  # share of the tangent's n^2 positions; None: the mechanism's own
 
-    @property
-    def name(self):
-        return f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}")
-
-    @property
-    def steps(self):
-        """About those of its stretch, which `mbs bench` chooses by the size."""
-        return max(40, min(800, 800 * 400 // self.variables))
+    name = property(lambda self: f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}"))
+    # about those of its stretch, which `mbs bench` chooses by the size
+    steps = property(lambda self: max(40, min(800, 800 * 400 // self.variables)))
 
 
 @dataclass
@@ -94,9 +89,7 @@ class Pilot:
     step_us: float  # infinite if it failed; the least that is proved if it ran out of time
     fill: float = math.nan
 
-    @property
-    def alive(self):
-        return math.isfinite(self.step_us)
+    alive = property(lambda self: math.isfinite(self.step_us))
 
 
 def fit(lab, scene, contenders):
