@@ -76,7 +76,10 @@ def run(arguments):
         cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
     else:
         _run_here(profile, options.only, chosen, folder, options.wait)
-    _say_disturbance(folder)
+    for part in parts():  # what else ran while they timed
+        path = folder / part / "answers.json"
+        if said := path.exists() and read_object(path).get("disturbance"):
+            print(f"{part}: {said}")
     print(f"site: {folder / 'index.html'}")
     return 0
 
@@ -92,14 +95,6 @@ def _run_here(profile, only, chosen, folder, wait):
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
               f"{duration(planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
-
-
-def _say_disturbance(folder):
-    """What else ran while the parts of a set timed."""
-    for part in parts():
-        path = folder / part / "answers.json"
-        if said := path.exists() and read_object(path).get("disturbance"):
-            print(f"{part}: {said}")
 
 
 def figures(arguments):

@@ -138,18 +138,13 @@ def line_each(axes, labels, **text):
 def save(figure, path, above=""):
     """Writes a figure in the format of the suffix of `path`; equal figures give equal files. `above`: a line over all of it, which
     says of which machine and day it is, wherever it is shown."""
-    box, kind, (width, height) = _placed(figure), Path(path).suffix, figure.get_size_inches()
+    if figure.get_layout_engine():  # made once here, where `savefig` with "tight" would draw all of the figure for that
+        figure.get_layout_engine().execute(figure)
+        figure.set_layout_engine(None)
+    box, kind, (width, height) = figure.get_tightbbox().frozen(), Path(path).suffix, figure.get_size_inches()
     if above:
         line = figure.text(box.x0 / width, (box.y1 + 0.08) / height, above, fontsize=8, color=GREY, va="bottom")
         box = Bbox.union([box, line.get_window_extent().transformed(figure.dpi_scale_trans.inverted())])
     box = box.padded(matplotlib.rcParams["savefig.pad_inches"])
     write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches=box,
                                                metadata={"Date": None} if kind == ".svg" else None))
-
-
-def _placed(figure):
-    """The box of all that a figure has, inches; its layout is made once, where `savefig` with "tight" would draw all of it for that."""
-    if figure.get_layout_engine():
-        figure.get_layout_engine().execute(figure)
-        figure.set_layout_engine(None)
-    return figure.get_tightbbox().frozen()

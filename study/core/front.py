@@ -85,7 +85,8 @@ def run_workflow(studyset, columns, stored=False):
 
 
 def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
-    """Runs a command to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
+    """Runs a command to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it and all that it started here, each
+    after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
         begin = log.tell()
@@ -97,7 +98,11 @@ def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
                 show(display)
                 time.sleep(0.15)
         finally:
-            _stop(process, ends)
+            for sign in ends:
+                if process.poll() is None:
+                    os.killpg(process.pid, sign)
+                    with contextlib.suppress(subprocess.TimeoutExpired):
+                        process.wait(timeout=10)
             display.end()
     if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
         raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
@@ -121,15 +126,6 @@ def _command(studyset):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
-
-
-def _stop(process, ends):
-    for sign in ends:
-        if process.poll() is not None:
-            return
-        os.killpg(process.pid, sign)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=10)
 
 
 def duration(seconds):
