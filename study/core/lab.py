@@ -48,9 +48,8 @@ class Lab:
         self._expect(cells)
         found, todo, known, before = {}, [], set(self.names), self.spent
         for cell in dict.fromkeys(cells):
-            path = self._path(cell)
-            if path.exists():
-                found[cell] = self._keep(records.read(path, self._name(cell)))
+            if (self.base / self._name(cell)).exists():
+                found[cell] = self._keep(cell)
                 records.need_same_origin(found[cell], self._asked_of(cell), self.base)
             else:
                 todo.append(cell)
@@ -71,11 +70,8 @@ class Lab:
     def skip(self, cell, status, reason):
         cell = cell.settled()
         self._expect([cell])
-        path = self._path(cell)
-        if not path.exists():
-            records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
+        return self._keep(cell, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
                                  "command": executor.command_of(cell), "context": self._context(cell, self.set.facts["context"])})
-        return self._keep(records.read(path, self._name(cell)))
 
     def scene(self, name, document):
         """Writes a scene of the part's own; its name for cells."""
@@ -109,9 +105,7 @@ class Lab:
                              "that run; make room and run it again")
         if not data["context"]:
             data["context"] = self._context(cell, context)
-        if not self._path(cell).exists():  # a node that was given up may be at work still: the first record stays
-            records.write(self._path(cell), data)
-        return self._keep(records.read(self._path(cell), self._name(cell)))
+        return self._keep(cell, data)
 
     def _asked_of(self, cell):
         return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
@@ -128,7 +122,12 @@ class Lab:
         """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
         return context if cell.own else {key: context[key] for key in executor.OF_ALL if key in context}
 
-    def _keep(self, record):
+    def _keep(self, cell, data=None):
+        """The cell's record, which counts from now on. `data`: what it says, if there is none yet."""
+        path = self.base / self._name(cell)
+        if data and not path.exists():  # a node that was given up may be at work still: the first record stays
+            records.write(path, data)
+        record = records.read(path, self._name(cell))
         if record.name not in self.names:
             taken = BETWEEN + record.seconds / (1 if record.cell["timed"] else cores())
             with self.lock:
@@ -139,9 +138,6 @@ class Lab:
 
     def _name(self, cell):
         return f"{self.column}/{cell.file_name()}"
-
-    def _path(self, cell):
-        return self.base / self._name(cell)
 
 
 def cores():
