@@ -9,7 +9,7 @@
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
 from collections import Counter, namedtuple
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy
 import pandas
@@ -195,12 +195,8 @@ def _median(first, second):
     return float(ordered[(count - 1) // 2] + ordered[count // 2]) / 2
 
 
-@dataclass(frozen=True)
-class Ranking:
+class Ranking(namedtuple("Ranking", "winner ratios")):
     """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first."""
-    winner: str
-    ratios: dict
-
     second = property(lambda self: next((name for name in self.ratios if name != self.winner), None))
     margin = property(lambda self: self.ratios.get(self.second, NONE))
 

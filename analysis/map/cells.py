@@ -1,24 +1,16 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 
 import pandas
 
-from analysis.core.timing import Ranking
 from analysis.map import carry
 from analysis.map.timed import layers
 
 
-@dataclass(frozen=True)
-class Cell:
-    """One scene as a map shows it. `ranking` is None if nobody could be timed there."""
-    scene: str
-    variables: float
-    fill_asked: float | None  # share; None: the mechanism's own fill
-    fill_percent: float       # as measured
-    ranking: Ranking | None
-    excluded: tuple
-    failed: tuple
+class Cell(namedtuple("Cell", "scene variables fill_asked fill_percent ranking excluded failed")):
+    """One scene as a map shows it. `fill_asked`: share; None: the mechanism's own fill; `fill_percent`: as measured; `ranking`: a
+    timing.Ranking; None if nobody could be timed there."""
 
     @property
     def decided(self):

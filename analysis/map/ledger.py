@@ -1,6 +1,6 @@
 # A row of the claims ledger: the paper's figure, ours with its interval, and the verdict by a rule.
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 
 from analysis.core.gather import gather
 from analysis.core.text import bounded, number, rough
@@ -11,12 +11,8 @@ VERDICTS = (CONFIRMED, EXCEEDED, REFUTED, MIXED, UNDECIDED, INCOMPARABLE, UNMEAS
 FACTOR_BAND = 1.25  # around a factor of the paper: from it divided by this to it times this confirms
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(namedtuple("Rule", "low high beyond", defaults=(-math.inf, math.inf, REFUTED))):
     """What confirms lies between `low` and `high`; `beyond`: the verdict on what lies above."""
-    low: float = -math.inf
-    high: float = math.inf
-    beyond: str = REFUTED
 
     def text(self, unit):
         if math.isinf(self.high):

@@ -6,6 +6,7 @@
 #
 # A few processes of all are timed, without those whose stretch takes another number of passes, and then more of those who lead.
 import math
+from collections import namedtuple
 from dataclasses import dataclass, field
 
 from analysis.core.timing import LEFT_OUT, differing
@@ -83,12 +84,8 @@ class TimedScene:
                        seconds=limit, settings=("--patience", limit / 10))
 
 
-@dataclass(frozen=True)
-class Pilot:
-    record: object
-    step_us: float  # infinite if it failed; the least that is proved if it ran out of time
-    fill: float = math.nan
-
+class Pilot(namedtuple("Pilot", "record step_us fill", defaults=(math.nan,))):
+    """`step_us`: infinite if it failed; the least that is proved if it ran out of time."""
     alive = property(lambda self: math.isfinite(self.step_us))
 
 
@@ -123,12 +120,7 @@ def _pilots(lab, scene, contenders):
             yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
 
 
-@dataclass(frozen=True)
-class Rule:
-    lab: object
-    scene: object
-    pilots: dict
-
+class Rule(namedtuple("Rule", "lab scene pilots")):
     def best(self, verdicts):
         """Least time of the ranked ones that are not rejected; of the libraries, unless there is nobody else."""
         alive = {one: pilot.step_us for one, pilot in self.pilots.items() if pilot.alive and one.ranked and verdicts.get(one, True)}
