@@ -31,7 +31,7 @@ def of_families(folder):
     about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
     about = about[about.n.notna() & about.fill.notna()].set_index("scene")
     table = table[table.scene.isin(about.index) & ~table.implementation.isin(Folder(folder).registry.examples)]
-    by_role, found = grouped(records.read_part(folder, "families")), []
+    by_role = grouped(records.read_part(folder, "families"))
     for form in SCHEMES:
         timed = dict(by_scene(by_role.get(form, [])))
         for scene, cells in table[(table.scheme == form) & table.scene.isin(timed)].groupby("scene", sort=False):
@@ -39,29 +39,27 @@ def of_families(folder):
             good = (cells.status == "ok") & (cells.verdict == "agrees")
             able = list(cells.implementation[good])
             if able:
-                found.append(Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
-                                     {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
-                                     cells.set_index("implementation").look_us.dropna().to_dict(),
-                                     lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names])))
-    return found
+                yield Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
+                              {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
+                              cells.set_index("implementation").look_us.dropna().to_dict(),
+                              lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names]))
 
 
 def of_map(folder):
     """Contests on the four-bar over size and artificial fill, in the penalty form."""
     results = Results({"tidy": schema.read_table(folder, "map", "tidy")}, View(folder, "map"))
-    names, found = results.layer("all"), []
+    names = results.layer("all")
     for scene in results.samples()[results.samples().fill_percent.notna()].scene.unique():
         rows = results.rows(scene)
         good = rows[rows.status == "ok"]
         lost = rows[~rows.status.isin(["ok", "dropped"])].drop_duplicates("implementation").set_index("implementation")
         able = [name for name in names if name in set(good.implementation) and name not in lost.index]
         if able:
-            found.append(Contest("map", scene, SCHEMES[0], rows.variables.iloc[0], rows.fill_percent.iloc[0], good, able,
-                                 {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
-                                 [name for name in names if name in lost.index and lost.status[name] in FAILURES],
-                                 rows.groupby("implementation").pilot_us.first().dropna().to_dict(),
-                                 lambda names, scene=scene: results.rank(scene, names), results.beyond(scene)))
-    return found
+            yield Contest("map", scene, SCHEMES[0], rows.variables.iloc[0], rows.fill_percent.iloc[0], good, able,
+                          {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
+                          [name for name in names if name in lost.index and lost.status[name] in FAILURES],
+                          rows.groupby("implementation").pilot_us.first().dropna().to_dict(),
+                          lambda names, scene=scene: results.rank(scene, names), results.beyond(scene))
 
 
 Curve = namedtuple("Curve", "subject scene title unit n fill points rounds")  # a scene whose runs were judged: its points with error and time
@@ -71,14 +69,13 @@ def of_accuracy(folder):
     view = View(folder, "accuracy")
     tables = {name: schema.read_table(folder, "accuracy", name) for name in ("points", "references")}
     about = tables["references"].drop_duplicates("subject").set_index("subject")
-    kinds, found = columns(view.settings), []
+    kinds = columns(view.settings)
     timed = accuracy.timed([one for one in records.read_part(folder, "accuracy") if kinds.get(one.column, ("pairs",))[0] != "pairs"])
     for (subject, scene), rows in tables["points"].groupby(["subject", "scene"], sort=False):
         known, mine = about.loc[subject], meeting(rows, numpy.inf)
         if len(mine):
-            found.append(Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
-                               accuracy.rounds(rows, timed)))
-    return found
+            yield Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
+                        accuracy.rounds(rows, timed))
 
 
 PARTS = {"families": of_families, "map": of_map, "accuracy": of_accuracy}
@@ -86,7 +83,7 @@ PARTS = {"families": of_families, "map": of_map, "accuracy": of_accuracy}
 
 def read(folder):
     """{part: its contests or curves}; [] of a part without tables."""
-    return {part: find(folder) if (folder / part / schema.DIGESTS).exists() else [] for part, find in PARTS.items()}
+    return {part: [*find(folder)] if (folder / part / schema.DIGESTS).exists() else [] for part, find in PARTS.items()}
 
 
 def as_json(folder, found, number):

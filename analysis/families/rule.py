@@ -39,8 +39,8 @@ def judged(tables, registry):
         return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
-    return {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
-            "by_hand": by_hand.table(data, WORTH, UNKNOWN)}
+    rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
+    return {name: pandas.DataFrame(found) for name, found in rows.items()} | {"by_hand": by_hand.table(data, WORTH, UNKNOWN)}
 
 
 def summary(held):
@@ -97,35 +97,28 @@ def _range(ratios, scheme, name, without=None):
 
 
 def _steps(data, rule, ratios, registry):
-    rows = []
     for (scheme, name), found in rule.models.items():
         low, high = _range(ratios, scheme, name)
-        rows += [{"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
-                  "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name], "low": low, "high": high,
-                  "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items()]
-    return pandas.DataFrame(rows)
+        yield from ({"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
+                     "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name], "low": low, "high": high,
+                     "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items())
 
 
 def _held(data, rests, ratios):
     """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
-    rows = []
     for family, rest in rests.items():
         for scheme, losses in data.losses.items():
             for scene in [one for one in losses.index if data.family[one] == family]:
                 name, us = rest.choice(scheme, data.features.loc[[scene]])
                 low, high = _range(ratios, scheme, name, family)
                 measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
-                rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
-                             "fastest": losses.loc[scene].idxmin(),
-                             "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name], "step_us": measured,
-                             "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]})
-    return pandas.DataFrame(rows)
+                yield {"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
+                       "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name],
+                       "step_us": measured, "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]}
 
 
 def _alone(data):
-    """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another. [Which
-    number decides?]"""
-    rows = []
+    """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another."""
     for feature in ALONE:
         losses = []
         for family in dict.fromkeys(data.family.values()):
@@ -137,8 +130,7 @@ def _alone(data):
                     _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(),
                                                            costs.to_numpy() * rest.weights(costs.index)[:, None])
                     losses += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
-        rows.append({"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records})
-    return pandas.DataFrame(rows)
+        yield {"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records}
 
 
 class _Rule:

@@ -40,7 +40,7 @@ def build(records, view):
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
     fills = tables["mechanisms"][["scene", "fill"]].dropna()
     first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
-    return tables | {"defaults": defaults.table(first["scenes"], first["winners"]), "growth": growth(tables["scenes"], tables["mechanisms"]),
+    return tables | {"defaults": defaults.table(first["scenes"], first["winners"]), "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])),
                      "orderings": orderings(about), "controls": pandas.DataFrame(twins)} | judged(tables, registry)
 
 
@@ -67,18 +67,15 @@ def growth(scenes, mechanisms):
     """A row for each family, form and implementation with at least LEAST sizes: t ~ n^a, t ~ flops^b."""
     known = mechanisms.set_index("scene")[["n", "flops"]].astype(float)
     timed = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna() & ~scenes.family.str.contains("filled")]
-    rows = []
     for (family, scheme, name), group in timed.groupby(["family", "scheme", "implementation"], sort=False):
         group = group[group.scene.isin(known.index)]
         sizes = known.loc[group.scene]
         if sizes.n.nunique() < LEAST:
             continue
         exponent, low, high = power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
-        rows.append({"family": family, "scheme": scheme, "implementation": name, "sizes": len(group),
-                     "least": sizes.n.min(), "most": sizes.n.max(), "exponent": exponent, "low": low, "high": high,
-                     "per_flop": power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
-                     "record": " ".join(dict.fromkeys(group.record))})
-    return pandas.DataFrame(rows)
+        yield {"family": family, "scheme": scheme, "implementation": name, "sizes": len(group), "least": sizes.n.min(), "most": sizes.n.max(),
+               "exponent": exponent, "low": low, "high": high, "per_flop": power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
+               "record": " ".join(dict.fromkeys(group.record))}
 
 
 def orderings(about):

@@ -23,7 +23,7 @@ ORDER_OF_MAGNITUDE = 10  # %, of the spread between implementations
 
 def table1(results):
     """T1. Rule: our share within SHARE_BAND points of the paper's."""
-    found, profiled = [], results.tidy[(results.tidy.kind == "phases") & (results.tidy.status == "ok")]
+    profiled = results.tidy[(results.tidy.kind == "phases") & (results.tidy.status == "ok")]
     for (kind, size), quoted in paper.TABLE1.items():
         name = paper.STARTING[kind]
         cell = profiled[(profiled.implementation == name) & (profiled.variables == size)]
@@ -32,26 +32,24 @@ def table1(results):
             head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
             rule = Rule(share - SHARE_BAND, share + SHARE_BAND)
             if share >= MAIN_SHARE and len(cell) < PROCESSES:
-                found.append(unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %"))
+                yield unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
             elif share >= MAIN_SHARE:
                 mine, whole = (cell[[f"phase_{phase}" for phase in some]].sum(axis=1) for some in (phases, PHASES))
                 middle, half, *_ = student(100 * mine / whole)
-                found.append(judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %"))
-    return found
+                yield judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %")
 
 
 def table2_claims(results):
     """T2. Rule: a variant that is not optimised, over the fastest optimised one, within the band around the paper's ratio;
     a row an operation and such a variant, judged at every size."""
-    rows, plain = [], [name for name in results.variants if name.split("/")[0] == paper.NOT_OPTIMISED]
+    plain = [name for name in results.variants if name.split("/")[0] == paper.NOT_OPTIMISED]
     for operation, (before, after, quoted) in paper.TABLE2.items():
         claim = f"symbolic preprocessing makes the {paper.OPERATIONS[operation]} {quoted} times faster"
         quote = f"{quoted}× ({before} → {after} ms)"
         found = {slow: ratios for slow in plain if (ratios := _gains(results, operation, slow))}
-        rows += [compared(("T2", f"{claim} ({slow})", quote), ratios, factor(quoted)) for slow, ratios in found.items()]
+        yield from (compared(("T2", f"{claim} ({slow})", quote), ratios, factor(quoted)) for slow, ratios in found.items())
         if not found:
-            rows.append(unmeasured(("T2", claim, quote), "The operations alone were not timed in this run.", factor(quoted)))
-    return rows
+            yield unmeasured(("T2", claim, quote), "The operations alone were not timed in this run.", factor(quoted))
 
 
 def _gains(results, operation, slow):

@@ -21,7 +21,7 @@ def standing(results):
 
 def over_fill(results):
     """F5. Rule: best dense, on any pair, ÷ system above 1 at every fill."""
-    samples, dense, rows = results.samples(), paper.dense(results), []
+    samples, dense = results.samples(), paper.dense(results)
     samples = samples[samples.implementation.isin(standing(results))]
     filled = samples[samples.fill_asked.notna()].groupby("variables").scene.nunique()
     size = min(filled.index[filled >= FILLS_NEEDED], key=lambda size: abs(size - F5_SIZE), default=None)
@@ -33,13 +33,12 @@ def over_fill(results):
         lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
         cases = [(f"{one.fill:.0f} %", one[:3], one.record) for one in found if one]
         if size is None:
-            rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", Rule(low=1)))
+            yield unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", Rule(low=1))
         elif lost or not cases:
             text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
-            rows.append(unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", Rule(low=1)))
+            yield unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", Rule(low=1))
         else:
-            rows.append(judged(head, cases, Rule(low=1), f"n = {size:g}, best dense ÷ {', '.join(names)}"))
-    return rows
+            yield judged(head, cases, Rule(low=1), f"n = {size:g}, best dense ÷ {', '.join(names)}")
 
 
 def regions(results):

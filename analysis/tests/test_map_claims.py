@@ -102,8 +102,8 @@ def test_a_single_process_decides_nothing():
 
 def test_table1_compares_shares_in_points():
     shares = (0.20, 0.25, 0.20, 0.10, 0.05, 0.20)  # evaluation and assembly: 45 %; solving: 30 %
-    rows = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, *[shares] * 6)))
-    few = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, shares, shares)))
+    rows = [*table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, *[shares] * 6)))]
+    few = [*table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, shares, shares)))]
     assert outcome(few, "dense", "residual")[0] == UNMEASURED and "2 processes" in few[0]["reason"]
     assert outcome(rows, "dense", "residual") == (CONFIRMED, "45 %")
     assert outcome(rows, "dense", "factorize") == (REFUTED, "30 %")
@@ -115,7 +115,7 @@ def test_table2_is_judged_at_every_size_for_each_plain_version():
     for size in (10, 250, 1000):
         for name, time in ((KLU, size), (PLAIN, size ** 2), (AXPY, 5 * size)):
             rows += operation(name, size, "rank_k_update", time, time)
-    rows = table2_claims(load(rows))
+    rows = [*table2_claims(load(rows))]
     assert outcome(rows, "rank-k", PLAIN) == (MIXED, "10 to 1000×") and outcome(rows, "rank-k", AXPY) == (REFUTED, "5×")
     assert outcome(rows, "addition")[0] == UNMEASURED
     mixed = next(row for row in rows if PLAIN in row["claim"])
@@ -226,7 +226,7 @@ def test_one_disturbed_size_does_not_decide():
 def test_over_fill_names_the_fill_where_dense_is_faster():
     rows = [row for fill, sparse in ((None, 1), (0.2, 2), (0.5, 3), (1.0, 5))
             for row in steady(SIMPLICIAL, 100, sparse, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
-    found = over_fill(load(rows))
+    found = [*over_fill(load(rows))]
     assert outcome(found, "CHOLMOD") == (MIXED, "0.8 to 4×") and found[0]["reason"] == "confirmed at 5 %, 20 %, 50 %; refuted at 100 %"
     assert outcome(found, "WSMP")[0] == UNMEASURED
 
@@ -234,7 +234,7 @@ def test_over_fill_names_the_fill_where_dense_is_faster():
 def test_a_fill_at_which_a_solver_was_lost_leaves_the_claim_open():
     rows = [row for fill in (0.2, 0.5) for row in steady(SIMPLICIAL, 100, 1, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
     rows += steady(POTRF, 100, 4, fill=1.0) + failed(SIMPLICIAL, 100, "crashed", "SIGSEGV", fill=1.0)
-    row = over_fill(load(rows))[0]
+    row, _ = over_fill(load(rows))
     assert row["verdict"] == UNMEASURED and "fills of 100 %" in row["reason"]
 
 

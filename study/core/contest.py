@@ -1,5 +1,5 @@
 # A contest on one scene: a look at everyone, the gate for those who are near the fastest, and the times of those who agree.
-from collections import Counter, namedtuple
+from collections import namedtuple
 from dataclasses import replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
@@ -77,8 +77,7 @@ def times_of(rows):
 
 def usual(lab):
     """Contenders of the environment that most have: they share processes."""
-    found = Counter(one.environment for one in lab.contenders).most_common(1)
-    return [one for one in lab.contenders if one.environment == found[0][0]] if found else []
+    return list(max(by_environment(lab.contenders).values(), key=len, default=()))
 
 
 def elsewhere(lab, cell):

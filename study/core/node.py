@@ -111,12 +111,9 @@ def uncontrolled(studyset):
     twin = twin_of(one)
     with locks.only_one_timing():
         for _ in range(TRIES):
-            found = []
-            for number in range(1, LAYOUTS + 1):
-                cell = Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number,
-                            f"{LAYOUT}{number}", timed=True).settled()
-                found.append(Record("control", **executor.run(cell, None, studyset.scratch)))
-            rows = processes(found)
+            cells = [Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number, f"{LAYOUT}{number}",
+                          timed=True).settled() for number in range(1, LAYOUTS + 1)]
+            rows = processes([Record("control", **executor.run(cell, None, studyset.scratch)) for cell in cells])
             for row in rows[rows.status != "ok"].itertuples():  # its ratio would be none, and none is decided
                 raise StudyError(f"its A/A control does not run: {row.status}: {row.reason}")
             seen = ratio(rows, twin.name, one.name)

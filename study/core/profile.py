@@ -40,10 +40,9 @@ def read(path, name, chosen=None):
     more = data["parts"].keys() if chosen is not None and isinstance(data["parts"], dict) else ()
     need_keys(path, "parts", data["parts"], {*(parts() if chosen is None else chosen), *more})
     for part in parts() if chosen is None else chosen:
-        settings = data["parts"][part]
-        wanted = plan_of(part).SETTINGS
-        need_keys(path, part, settings, {"seconds", *wanted})
-        for key, kind in {"seconds": float, **wanted}.items():
+        settings, wanted = data["parts"][part], {"seconds": float, **plan_of(part).SETTINGS}
+        need_keys(path, part, settings, set(wanted))
+        for key, kind in wanted.items():
             where, value = f"{path}: {part}: {key}", settings[key]
             if not isinstance(value, (int, float) if kind is float else kind) or isinstance(value, bool) != (kind is bool):
                 raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
