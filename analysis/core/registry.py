@@ -15,39 +15,16 @@ class Registry:
     listed: dict  # as printed
 
     entries = property(lambda self: self.listed["implementations"])  # folders with their variants, the unavailable ones too
-
-    @cached_property
-    def variants(self):
-        """{name: what is said of it and of its folder} of those that are available and stand for themselves."""
-        return {name: one for name, one in self._available.items() if not one.get("tried_for")}
-
-    @cached_property
-    def tried(self):
-        """The same of those that are another variant with a setting that was tried; "tried_for" is its name."""
-        return {name: one for name, one in self._available.items() if one.get("tried_for")}
-
-    @cached_property
-    def _available(self):
-        return {variant["name"]: entry | variant for entry in self.entries if entry["available"] for variant in entry["variants"]}
-
-    @cached_property
-    def examples(self):
-        """Names of the variants that are there to be read, and timed only where they are named."""
-        return frozenset(name for name, one in self.variants.items() if one.get("role") == "example")
-
-    @cached_property
-    def own(self):
-        """Names of the variants that stand on no library."""
-        return frozenset(name for name, one in self.variants.items() if one.get("library") == "none") - self.examples
-
-    @cached_property
-    def libraries(self):
-        """Names of the others, in order."""
-        return [name for name in self.variants if name not in self.own | self.examples]
-
-    @cached_property
-    def dense(self):
-        return frozenset(name for name, one in self.variants.items() if one.get("dense"))
+    # {name: what is said of it and of its folder} of those that are available: of all; of those that stand for themselves; of those that are
+    # another variant with a setting that was tried, whose name is "tried_for".
+    _available = cached_property(lambda self: {one["name"]: entry | one for entry in self.entries if entry["available"] for one in entry["variants"]})
+    variants = cached_property(lambda self: {name: one for name, one in self._available.items() if not one.get("tried_for")})
+    tried = cached_property(lambda self: {name: one for name, one in self._available.items() if one.get("tried_for")})
+    # Names of variants: those that are there to be read, and timed only where they are named; that stand on no library; the others, in order.
+    examples = cached_property(lambda self: frozenset(name for name, one in self.variants.items() if one.get("role") == "example"))
+    own = cached_property(lambda self: frozenset(name for name, one in self.variants.items() if one.get("library") == "none") - self.examples)
+    libraries = cached_property(lambda self: [name for name in self.variants if name not in self.own | self.examples])
+    dense = cached_property(lambda self: frozenset(name for name, one in self.variants.items() if one.get("dense")))
 
     def gpl(self, name):
         """Whether a program with the library of this variant may be distributed under the GPL alone."""

@@ -25,15 +25,9 @@ class Folder:
     """A set's, with what the set says of itself."""
     folder: Path
 
-    @cached_property
-    def facts(self):
-        return facts_of(self.folder)
-
+    facts = cached_property(lambda self: facts_of(self.folder))
     context = property(lambda self: self.facts["context"])
-
-    @cached_property
-    def registry(self):
-        return Registry(read_object(self.folder / "registry.json", implementations=list))
+    registry = cached_property(lambda self: Registry(read_object(self.folder / "registry.json", implementations=list)))
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
 from collections import namedtuple
-from functools import cache, cached_property
+from functools import cache
 
 from analysis.core.registry import NULL, TWIN
 from analysis.core.timing import NO_VARIANCE
@@ -31,21 +31,12 @@ class Results:
     def __init__(self, tables, view):
         self.tidy, self.view = tables["tidy"], view
         self.registry, self.variants = view.registry, view.registry.variants
-
-    @cached_property
-    def implementations(self):
-        """Names that take part in rankings, in the registry's order."""
         present = set(self.tidy.implementation)
-        return [name for name in self.variants if name in present]
-
-    @cached_property
-    def timing(self):
-        """Rows of timed processes and of what was not timed."""
-        return with_samples(self.tidy[self.tidy.kind == "timing"])
-
-    @cached_property
-    def _scenes(self):
-        return dict(list(self.timing.groupby("scene")))
+        self.implementations = [name for name in self.variants if name in present]  # that take part in rankings, in the registry's order
+        self.timing = with_samples(self.tidy[self.tidy.kind == "timing"])  # rows of timed processes and of what was not timed
+        self._scenes = dict(list(self.timing.groupby("scene")))
+        self._of_seeds = carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
+        self.sizes = sorted(self.samples(natural_only=True).variables.unique())  # that were timed at their own fill
 
     def rows(self, scene):
         """All timing rows of a scene, whatever their status."""
@@ -60,10 +51,6 @@ class Results:
         """What timing.Paired takes: artificial fill is placed elsewhere by another seed."""
         return self._of_seeds if self.rows(scene).fill_asked.notna().any() else NO_VARIANCE
 
-    @cached_property
-    def _of_seeds(self):
-        return carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
-
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
         return [one for one in layers(self.registry)[name] if one in self.implementations]
@@ -76,11 +63,6 @@ class Results:
 
     def natural(self, size):
         return f"four-bar:{round(size) // 2 - 1}"
-
-    @cached_property
-    def sizes(self):
-        """Sizes that were timed at their own fill."""
-        return sorted(self.samples(natural_only=True).variables.unique())
 
     @cache
     def alternatives(self, variant):

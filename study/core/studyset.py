@@ -21,14 +21,9 @@ BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # wha
 
 
 class StudySet(Folder):
-    @cached_property
-    def profile(self):
-        return profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"])
-
-    @cached_property
-    def contenders(self):
-        """Those of the selection on their usual pairs, in the registry's order."""
-        return on_usual_pairs(self.registry, self.profile.blas, select(self.registry, self.facts["only"]))
+    profile = cached_property(lambda self: profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"]))
+    # Those of the selection on their usual pairs, in the registry's order.
+    contenders = cached_property(lambda self: on_usual_pairs(self.registry, self.profile.blas, select(self.registry, self.facts["only"])))
 
     def context(self, one):
         """What is known of a contender's environment; asked of its program the first time."""
