@@ -30,10 +30,8 @@ class Registry:
         """Whether a program with the library of this variant may be distributed under the GPL alone."""
         return re.search(r"(?<!L)GPL", self.variants[name]["licence"]) is not None
 
-    @property
-    def pairs(self):
-        """{name: why it cannot be used, or ""} of the BLAS and LAPACK pairs."""
-        return {pair["name"]: "" if pair["available"] else pair["reason"] for pair in self.listed.get("blas", [])}
+    # {name: why it cannot be used, or ""} of the BLAS and LAPACK pairs.
+    pairs = property(lambda self: {pair["name"]: "" if pair["available"] else pair["reason"] for pair in self.listed.get("blas", [])})
 
     @property
     def versions(self):

@@ -199,27 +199,14 @@ class Ranking(namedtuple("Ranking", "winner ratios")):
     """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first."""
     second = property(lambda self: next((name for name in self.ratios if name != self.winner), None))
     margin = property(lambda self: self.ratios.get(self.second, NONE))
-
-    @property
-    def decided(self):
-        """Whether the winner is shown to be faster than each other one."""
-        return all(one.low > 1 for name, one in self.ratios.items() if name != self.winner)
-
-    @property
-    def chance(self):
-        """To find the winner so far ahead where one of the others is as fast; NaN if there is no other."""
-        return max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan)
-
-    @property
-    def equivalent(self):
-        """The winner and all that are shown to take at most EQUIVALENT times its time."""
-        return tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT)
-
-    @property
-    def open(self):
-        """Those of whom neither is shown: not that they are slower, not that they are as fast."""
-        return tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
-
+    # Whether the winner is shown to be faster than each other one.
+    decided = property(lambda self: all(one.low > 1 for name, one in self.ratios.items() if name != self.winner))
+    # To find the winner so far ahead where one of the others is as fast; NaN if there is no other.
+    chance = property(lambda self: max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan))
+    # The winner and all that are shown to take at most EQUIVALENT times its time.
+    equivalent = property(lambda self: tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT))
+    # Those of whom neither is shown: not that they are slower, not that they are as fast.
+    open = property(lambda self: tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT))
     settled = property(lambda self: not self.open)  # whether it is said of each whether it is as fast as the winner
 
 

@@ -12,11 +12,8 @@ class Cell(namedtuple("Cell", "scene variables fill_asked fill_percent ranking e
     """One scene as a map shows it. `fill_asked`: share; None: the mechanism's own fill; `fill_percent`: as measured; `ranking`: a
     timing.Ranking; None if nobody could be timed there."""
 
-    @property
-    def decided(self):
-        """Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten."""
-        return bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed))
-
+    # Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten.
+    decided = property(lambda self: bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed)))
     settled = property(lambda self: bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed)))
     outcome = property(lambda self: "decided" if self.decided else "equivalent" if self.settled else "open")
 

@@ -18,11 +18,8 @@ class Setting:
     changes: tuple = ()  # (option, value) pairs; an option without a value has ""
     title: str = field(default="", compare=False)
 
-    @property
-    def name(self):
-        """Its title, or "saddle-point, tangent kept"."""
-        return self.title or ", ".join([self.scheme, *(f"{option} {value}".strip() for option, value in self.changes)])
-
+    # Its title, or "saddle-point, tangent kept".
+    name = property(lambda self: self.title or ", ".join([self.scheme, *(f"{option} {value}".strip() for option, value in self.changes)]))
     file_name = property(lambda self: self.name.replace(", ", "-").replace(" ", "."))
     order = property(lambda self: ORDERS.get(self.scheme, 2))
     parent = property(lambda self: Setting(self.scheme))  # the scheme without changes: what this is compared with first
