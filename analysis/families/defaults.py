@@ -1,8 +1,5 @@
 # Defaults of other tools as rules for our contenders, and what following them costs on mechanisms whose fastest library is known.
-#
-# A rule sees what its tool sees: n and the fill of the tangent. Its tool's solver is mapped to the contender that calls the
-# same library; where none does, to the nearest, which the rule says. Dense LU of LAPACK is mapped to its Cholesky
-# factorization, which takes half the work: this favours such rules.
+# A tool's solver is mapped to the contender that calls the same library; where none does, to the nearest, which the rule says.
 from collections import Counter, namedtuple
 
 import numpy

@@ -1,13 +1,11 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), the least one's is taken. σ is
-# the root mean square of the logarithms of measured over predicted times in the fit: who scatters more must be ahead by more. This caution
-# was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution, changes no choice there.
-# That a dense and a sparse one are always compared was chosen so, too: without the families that fill most, no dense one is worth it.
-# Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
-# what was fitted on all others, its candidates too. A loss is of times taken in turns, else of the first look, else of the look at the next
-# smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known:
-# such scenes are counted, in no mean, and say nothing of who is worth comparing.
+# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), σ their scatter in the fit, the
+# least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal
+# distribution, changes no choice there. That a dense and a sparse one are always compared was chosen so, too: without the families that fill
+# most, no dense one is worth it. A loss is of times taken in turns, else of the first look, else of the look at the next smaller machine of the
+# shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known: such scenes are counted, in
+# no mean, and say nothing of who is worth comparing.
 from collections import Counter
 from itertools import combinations
 

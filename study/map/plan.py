@@ -1,7 +1,5 @@
 # The map: who is fastest at which size and fill of the N-four-bar. A column is a size; a scene a size at a fill.
-#
-# For each scene: rough pilots say who is hopeless, the gate says who is right, the rest is timed in turns. All of that
-# is decided from records, so that a run that was interrupted decides alike.
+# All of it is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
 from analysis.map.timed import leaders
 from study.core.cell import Cell, Contender, by_environment

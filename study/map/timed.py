@@ -1,10 +1,4 @@
-# A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed.
-#
-# Rough pilots are a few steps from the start. Who is slower than the fastest library by more than the profile's factor is excluded: neither checked
-# nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast one excludes nobody, and code of our own never excludes
-# anybody. In filled scenes the two fastest of each family stay within FAMILY times that factor: maps are drawn for families too.
-#
-# A few processes of all are timed, without those whose stretch takes another number of passes, and then more of those who lead.
+# A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed (README.md).
 import math
 from collections import namedtuple
 from dataclasses import dataclass, field
