@@ -85,8 +85,7 @@ def _scales(axes, n, values, label):
         low, high = float(min(found)), float(max(found))
         room = (high / low) ** 0.05 if high > low else 1.5
         (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low / room, high * room)
-    number_axis(axes.xaxis)
-    number_axis(axes.yaxis)
+        number_axis(axis)
     axes.set(xlabel="variables n", ylabel=label)
     axes.grid(True, which="major")
     axes.set_axisbelow(True)
