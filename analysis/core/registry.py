@@ -1,6 +1,6 @@
-# What `mbs list --json` says: who there is, in the order that tables and figures use.
+# What `mbs list --json` says (`listed`, as printed): who there is, in the order that tables and figures use.
 import re
-from dataclasses import dataclass
+from collections import namedtuple
 from functools import cached_property
 
 from analysis.core.gather import gather
@@ -10,10 +10,7 @@ TWIN = "+twin"  # a second instance of a contender in the same process: what is 
 ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
 
 
-@dataclass(frozen=True)
-class Registry:
-    listed: dict  # as printed
-
+class Registry(namedtuple("Registry", "listed")):
     entries = property(lambda self: self.listed["implementations"])  # folders with their variants, the unavailable ones too
     # {name: what is said of it and of its folder} of those that are available: of all; of those that stand for themselves; of those that are
     # another variant with a setting that was tried, whose name is "tried_for".

@@ -72,7 +72,6 @@ def _module(part, name):
 
 
 def _frame(folder, part):
-    """What the frame of every page shows."""
     view = View(folder, part)
     return {"part": part, "parts": parts(), "pages": pages(), "question": parts().get(part, ""), "facts": view.facts,
             "context": view.context, "libraries": view.registry.versions}

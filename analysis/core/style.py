@@ -99,7 +99,6 @@ def nothing(text):
 
 
 def missing(axes, text):
-    """Axes that say what is missing instead of showing nothing."""
     axes.set_axis_off()
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY, fontsize=10, wrap=True)
 

@@ -46,7 +46,6 @@ def of_families(folder):
 
 
 def of_map(folder):
-    """Contests on the four-bar over size and artificial fill, in the penalty form."""
     results = Results({"tidy": schema.read_table(folder, "map", "tidy")}, View(folder, "map"))
     names = results.layer("all")
     for scene in results.samples()[results.samples().fill_percent.notna()].scene.unique():

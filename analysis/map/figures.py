@@ -167,13 +167,12 @@ def sparse(results, look):
             axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
                         color=look.colour(name), linewidth=2.2, alpha=0.6)
         axes.axhline(1, color="#444444", linewidth=0.8)
-        axes.set(xlim=(-0.5, len(sizes) - 0.5))
+        axes.set(xlim=(-0.5, len(sizes) - 0.5), ylabel="time ÷ the least at that size")
         axes.grid(True, axis="y", which="major")
         for place in numpy.arange(0.5, len(sizes) - 1):
             axes.axvline(place, color="#e4e4e4", linewidth=0.8, zorder=0)
         if beyond:
             axes.axvspan(beyond[0] - 0.5, len(sizes) - 0.5, color="#f3f3f3", zorder=-1)
-        axes.set_ylabel("time ÷ the least at that size")
     panels[0].set(ylim=(0.96, LEADERS))
     panels[1].set_xlabel("variables n, own fill")
     number_axis(panels[1].yaxis, "×")

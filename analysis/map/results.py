@@ -39,7 +39,6 @@ class Results:
         self.sizes = sorted(self.samples(natural_only=True).variables.unique())  # that were timed at their own fill
 
     def rows(self, scene):
-        """All timing rows of a scene, whatever their status."""
         return self._scenes.get(scene, self.timing[:0])
 
     @cache

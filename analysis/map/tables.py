@@ -61,7 +61,6 @@ def _of(records, *roles):
 
 
 def _pairs(rows):
-    """(scene, implementation) of each row."""
     return pandas.Series(list(zip(rows.scene, rows.implementation)), rows.index, dtype=object)
 
 

@@ -32,7 +32,7 @@ class Setting:
             found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
         return found - {"penalty", "double"}
 
-    # how many times the automatic tolerance its own is; None if it does not refer to that
+    # How many times the automatic tolerance its own is; None if it does not refer to that.
     loosened = property(lambda self: LOOSENED.get(dict(self.changes).get("tolerance")))
 
     def words(self, base=(), tolerance=None):

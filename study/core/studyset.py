@@ -160,7 +160,6 @@ def start(folder, profile, only, chosen):
 
 
 def begun(profile, only, chosen, context, **question):
-    """The facts of a set that begins now."""
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")
     return {"profile": profile, "only": only, "parts": chosen, "context": context, "programs": {}, "date": now, **question}
 

@@ -20,13 +20,10 @@ RUNS = 3  # of a pilot; the fastest counts
 WORK = 3200  # variables times steps of a pilot
 
 
-@dataclass(frozen=True)
-class Scene:
-    variables: int
-    fill: float | None  # share of the tangent's n^2 positions; None: the mechanism's own
-
+class Scene(namedtuple("Scene", "variables fill")):
+    """`fill`: share of the tangent's n^2 positions; None: the mechanism's own."""
     name = property(lambda self: f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}"))
-    # about those of its stretch, which `mbs bench` chooses by the size
+    # About those of its stretch, which `mbs bench` chooses by the size.
     steps = property(lambda self: max(40, min(800, 800 * 400 // self.variables)))
 
 
@@ -110,8 +107,7 @@ def _pilots(lab, scene, contenders):
         if rows:
             yield Pilot(record, min(rows[0]["cpu_us"]) / steps, rows[0]["fill_percent"])
         else:  # a warm-up and RUNS stretches were not done within the limit
-            late = record.status == "timeout"
-            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
+            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if record.status == "timeout" else math.inf)
 
 
 class Rule(namedtuple("Rule", "lab scene pilots")):
@@ -136,13 +132,9 @@ class Rule(namedtuple("Rule", "lab scene pilots")):
 
 def alternatives(lab, scene):
     """Contenders of the profile's other pairs at this size; what is missing gets a record that says why."""
-    found = {}
-    for entry in lab.settings["alternatives"]:
-        usual = [one for one in lab.contenders if one.variant in entry["implementations"] or one.variant.split("/")[0] in entry["implementations"]]
-        for one in usual if scene.variables in entry["columns"] else []:
-            for pair in entry["blas"]:
-                if pair != one.blas:
-                    found[Contender(f"{one.name}+{pair}", one.variant, pair)] = lab.registry.pairs.get(pair, "unknown pair")
+    found = {Contender(f"{one.name}+{pair}", one.variant, pair): lab.registry.pairs.get(pair, "unknown pair")
+             for entry in lab.settings["alternatives"] if scene.variables in entry["columns"] for one in lab.contenders
+             if {one.variant, one.variant.split("/")[0]} & set(entry["implementations"]) for pair in entry["blas"] if pair != one.blas}
     for one, reason in found.items():
         if reason:
             lab.skip(Cell("bench", scene.name, (one,), role="unavailable"), "unavailable", reason)
