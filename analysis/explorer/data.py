@@ -77,12 +77,10 @@ def of_accuracy(folder):
                         accuracy.rounds(rows, timed))
 
 
-PARTS = {"families": of_families, "map": of_map, "accuracy": of_accuracy}
-
-
 def read(folder):
     """{part: its contests or curves}; [] of a part without tables."""
-    return {part: [*find(folder)] if (folder / part / schema.DIGESTS).exists() else [] for part, find in PARTS.items()}
+    return {part: [*find(folder)] if (folder / part / schema.DIGESTS).exists() else []
+            for part, find in (("families", of_families), ("map", of_map), ("accuracy", of_accuracy))}
 
 
 def as_json(folder, found, number):

@@ -24,8 +24,8 @@ def claims(results):
 
 
 def build(records, view):
-    found = {"tidy": tidy(records), "scenes": scenes(records), "verification": verification(records)}
-    found = {name: conform(frame, of_part("map")[name], f"map/{name}.csv") for name, frame in found.items()}
+    found = {name: conform(make(records), of_part("map")[name], f"map/{name}.csv")
+             for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "spread": carry.components(results.timing, with_samples(seeds)),

@@ -8,7 +8,7 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
-from study.core.front import duration, follow
+from study.core.front import duration, follow, snakemake
 from study.core.node import forget, home, own_sets, refusals
 from study.core.studyset import StudySet
 
@@ -62,8 +62,7 @@ def _plan(profile, only, chosen, folder, columns):
 
 
 def _workflow(studyset, cluster, columns, target):
-    command = ["/usr/bin/python3", "-m", "snakemake", target, "--snakefile", str(PROFILES / "Snakefile"), "--directory",
-               str(studyset.folder), "--profile", str(cluster), "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
+    command = snakemake(studyset, PROFILES / "Snakefile", target, "--profile", str(cluster))
     stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
 
     def show(display):

@@ -81,7 +81,12 @@ def run_workflow(studyset, columns, stored=False):
         elif not any(columns.values()):
             display.show("pages")
     pages = ["/usr/bin/python3", "-m", "study.core.job", ".", "pages"]
-    follow(studyset, pages if stored else _command(studyset), show)
+    follow(studyset, pages if stored else snakemake(studyset, ROOT / "study" / "Snakefile", "--cores", "all", "--scheduler", "greedy"), show)
+
+
+def snakemake(studyset, snakefile, *words):
+    return ["/usr/bin/python3", "-m", "snakemake", *words, "--snakefile", str(snakefile), "--directory", str(studyset.folder),
+            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
 
 
 def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
@@ -120,12 +125,6 @@ def _why(log, begin):
             return line.removeprefix("error: ")
     wrong = [line for line in lines[-12:] if "rror" in line]
     return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
-
-
-def _command(studyset):
-    return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
-            "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
-            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
 
 
 def duration(seconds):
