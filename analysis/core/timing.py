@@ -41,7 +41,10 @@ def counted(records):
     again. So a process that failed speaks for nobody who has a record of being left out of it or was measured beside
     one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
     one alone do not count, nor do disturbed processes where most of their kind are not. Roles come without "-left-out"."""
-    records = _calm([one for one in records if not one.role.endswith(ALONE)])
+    records = [one for one in records if not one.role.endswith(ALONE)]
+    kinds = gather(((*_asked(one), one.role, *one.cell["contenders"]), (disturbed(one), one)) for one in records)
+    noisy = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
+    records = [one for one in records if id(one) not in noisy]
     out, groups = (gather((_asked(one), one) for one in records if one.role.endswith(LEFT_OUT) == left) for left in (True, False))
     found = []
     for one in records:
@@ -51,13 +54,6 @@ def counted(records):
         elif not _replaced(one, groups[_asked(one)], lost):
             found.append(one)
     return found
-
-
-def _calm(records):
-    """Without disturbed processes, where most of the same question were calm."""
-    kinds = gather(((*_asked(one), one.role, *one.cell["contenders"]), (disturbed(one), one)) for one in records)
-    lost = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
-    return [one for one in records if id(one) not in lost]
 
 
 def disturbed(record):

@@ -30,8 +30,7 @@ def map_cells(results, names):
     rows = results.timing[(results.timing.scene != "") & results.timing.fill_percent.notna()]
     scenes = rows[["scene", "variables", "fill_asked", "fill_percent"]].drop_duplicates("scene")
     return [Cell(one.scene, one.variables, None if pandas.isna(one.fill_asked) else one.fill_asked, one.fill_percent,
-                 results.rank(one.scene, names), tuple(results.excluded(one.scene, names)),
-                 tuple(results.failed(one.scene, names)))
+                 results.rank(one.scene, names), *results.lost(one.scene, names))
             for one in scenes.sort_values(["variables", "fill_percent"], kind="stable").itertuples()]
 
 

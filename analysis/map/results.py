@@ -105,15 +105,8 @@ class Results:
         found = [one for one in found if one]
         return found if found and found[-1].size >= reaching else []
 
-    def failed(self, scene, names):
-        return self._with(scene, names, FAILURES)
-
-    def excluded(self, scene, names):
-        failed = self.failed(scene, names)
-        return [name for name in self._with(scene, names, ("excluded", "slower")) if name not in failed]
-
-    def _with(self, scene, names, statuses):
-        """Those of `names` that have a row of one of these statuses in a scene."""
+    def lost(self, scene, names):
+        """(those of `names` that were too slow in a scene, those that failed)"""
         rows = self.rows(scene)
-        known = set(rows.implementation[rows.status.isin(statuses)])
-        return [name for name in names if name in known]
+        slow, failed = (set(rows.implementation[rows.status.isin(some)]) for some in (("excluded", "slower"), FAILURES))
+        return tuple(name for name in names if name in slow - failed), tuple(name for name in names if name in failed)

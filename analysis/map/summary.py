@@ -9,9 +9,7 @@ def by_size(results, names):
     """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "margins"}];
     kind: "decided" (one name), "equivalent" or "open"; margins: of the second behind the winner."""
     groups = []
-    for cell in map_cells(results, names):
-        if cell.fill_asked is not None or cell.ranking is None:
-            continue
+    for cell in (one for one in map_cells(results, names) if one.fill_asked is None and one.ranking):
         found = {"names": sorted(cell.winners), "kind": cell.outcome}
         if not groups or groups[-1] | found != groups[-1]:
             groups.append(found | {"first": cell.variables, "margins": []})
@@ -29,12 +27,10 @@ def dense_from(results):
     """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those at and above which the
     best dense library is faster than the best sparse one (None: at none), "last_sparse" the last fill with another outcome (None: at none),
     "between" the first and last fill at which dense is faster if it is not up to the last one (or None)."""
-    rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results, others=True)])
-    for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
-        found = [(cell.fill_percent, results.best(cell.scene, paper.dense(results), paper.sparse(results, others=True)))
-                 for cell in cells if cell.variables == size and cell.ranking]
-        if not found:  # nobody was timed there
-            continue
+    rows, dense, sparse = [], paper.dense(results), paper.sparse(results, others=True)
+    cells = map_cells(results, [*dense, *sparse])
+    for size in sorted({one.variables for one in cells if one.fill_asked is not None} & {one.variables for one in cells if one.ranking}):
+        found = [(cell.fill_percent, results.best(cell.scene, dense, sparse)) for cell in cells if cell.variables == size and cell.ranking]
         faster = [bool(ratio and ratio.high < 1) for _, ratio in found]
         start = len(found) - next((place for place, one in enumerate(reversed(faster)) if not one), len(found))
         ahead = [fill for (fill, _), one in zip(found, faster) if one]
