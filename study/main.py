@@ -17,9 +17,8 @@ from study.core.studyset import (StudySet, listed, need_own, need_records, need_
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
-TOOLS = {"view": "study.tools.viewer.main", "advise": "study.tools.advise.main", "against": "study.tools.against",
-         "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
-         "new": "study.tools.new", "paper": "study.tools.paper.main", "sweep": "study.tools.sweep"}
+TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
+         "new": "new", "paper": "paper.main", "sweep": "sweep"}  # in study/tools
 
 
 def main(arguments):
@@ -28,7 +27,7 @@ def main(arguments):
     try:
         if command in TOOLS:  # imported only now: they need modules that study/run may have to install
             need_modules()
-            return getattr(importlib.import_module(TOOLS[command]), command)(rest)
+            return getattr(importlib.import_module(f"study.tools.{TOOLS[command]}"), command)(rest)
         return {"run": run, "figures": figures}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)

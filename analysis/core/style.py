@@ -121,8 +121,7 @@ def number_axis(axis, unit=""):
         (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     low, high = axis.get_view_interval()
     decades = numpy.log10(high / low)
-    steps = (1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)
-    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_locator(LogLocator(subs=(1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: number(value) + unit))
 
 

@@ -238,10 +238,8 @@ def differing(rows):
     totals = {}
     for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
         totals.setdefault(row.implementation, set()).add(row.passes)
-    votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
-    ranked = votes.most_common(2)
-    tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])
-    right = None if tie or not ranked else ranked[0][0]
+    ranked = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name).most_common(2)
+    right = None if not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1] else ranked[0][0]
     return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else
             f"{_text(values)} passes over the stretch, and no number is that of most"
             for name, values in totals.items() if values != {right}}

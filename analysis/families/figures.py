@@ -14,8 +14,7 @@ LABEL = "non-zeros a column of the factor L (AMD's order)"  # of it
 
 
 def draw(tables, view):
-    look = Look(view.registry)
-    return {"map": real_map(tables, look, view.registry), "held": held_figure(tables["held"])}
+    return {"map": real_map(tables, Look(view.registry), view.registry), "held": held_figure(tables["held"])}
 
 
 def best_form(winners, layer):
@@ -35,8 +34,7 @@ def real_map(tables, look, registry):
             missing(axes, "nobody was timed")
         return figure
     rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")
-    families = list(dict.fromkeys(rows.family))
-    marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(families)}
+    marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(dict.fromkeys(rows.family))}
     shown = {}
     for row in rows.itertuples():
         members = row.equivalent.split()

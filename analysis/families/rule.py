@@ -245,7 +245,6 @@ def _times(rows, libraries):
     if not known:
         return pandas.Series(dtype=float)
     first = timed.loc[known, "to_rival"].astype(float).idxmin()
-    looks = rows.look_us * (timed.step_us[first] / rows.look_us[first])
-    found = looks.where(rows.status.isin(["ok", "slower"]))
+    found = (rows.look_us * (timed.step_us[first] / rows.look_us[first])).where(rows.status.isin(["ok", "slower"]))
     found.update(timed.step_us[first] * timed.to_rival.astype(float))
     return found.astype(float)

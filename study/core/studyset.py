@@ -16,8 +16,7 @@ from study.core import executor, locks, profile as profiles
 from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
-BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
-         ".cluster", ".snakemake"}                                          # ... and on a cluster
+BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml", ".cluster", ".snakemake"}  # written before set.json, or on a cluster
 
 
 class StudySet(Folder):

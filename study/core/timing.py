@@ -22,8 +22,7 @@ def measure(lab, scene, contenders, *, processes, repetitions, settings=(), role
         if name != main and common.variant not in [one.variant for one in group]:
             label = f"{common.variant}+{group[0].build or group[0].blas}"
             group = (replace(common, name=label, blas=group[0].blas, build=group[0].build), *group)
-        cell = Cell("bench", scene, group, words, role, timed=True, seconds=seconds)
-        found += _environment(lab, cell, processes)
+        found += _environment(lab, Cell("bench", scene, group, words, role, timed=True, seconds=seconds), processes)
     return found
 
 
@@ -58,8 +57,7 @@ def _again(found, processes):
 def _culprits(lab, cell, record):
     """[(contender, status, reason)] of those who ended a process: the one that it named, or else each that ends one
     when it is alone there; all, where none does."""
-    named = record.output.get("culprit", "")
-    chosen = [one for one in cell.contenders if named == f"{one.variant}/{cell.scene}"]
+    chosen = [one for one in cell.contenders if record.output.get("culprit") == f"{one.variant}/{cell.scene}"]
     if chosen or len(cell.contenders) == 1:
         return [(one, record.status, record.reason) for one in chosen or cell.contenders]
     alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}{ALONE}"))) for one in cell.contenders]

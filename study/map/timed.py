@@ -58,8 +58,7 @@ class TimedScene:
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
             fastest = {ranking.winner for ranking in rankings.values() if ranking}
-            twins = [twin_of(one) for one in chosen if one.name in fastest]
-            self.records += self.processes([*chosen, *twins], count, "again")
+            self.records += self.processes([*chosen, *(twin_of(one) for one in chosen if one.name in fastest)], count, "again")
 
     @property
     def rankings(self):
