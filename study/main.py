@@ -1,5 +1,4 @@
 # The command lines of the study: study/run, study/figures, study/store; and the way into the tools beside the parts.
-import importlib
 import importlib.util
 import os
 import shlex
@@ -12,7 +11,6 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.profile import columns_of, planned
 from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished, writable)
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
@@ -72,7 +70,7 @@ def run(arguments):
     writable(folder)
     if way:
         need_modules()
-        cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
+        cluster.run(profile, options.only, chosen, folder, way, profiles.columns_of(profile, chosen))
     else:
         _run_here(profile, options.only, chosen, folder, options.wait)
     for part in parts():  # what else ran while they timed
@@ -88,11 +86,11 @@ def _run_here(profile, only, chosen, folder, wait):
         set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, only, chosen)
-        columns = columns_of(profile, chosen)
+        columns = profiles.columns_of(profile, chosen)
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
-              f"{duration(planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
+              f"{duration(profiles.planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
 
 
@@ -133,14 +131,14 @@ def dry_run(profile, chosen, folder, only, way):
     if only and (ROOT / "build" / "mbs").exists():
         select(listed(), only)
     print(f"profile {profile.name}: {profile.title}\nresults: {folder}\nleft out: {profile.dropped}")
-    columns = columns_of(profile, chosen)
+    columns = profiles.columns_of(profile, chosen)
     left = unfinished(StudySet(folder), columns)
     if way:
         cluster.dry_run(left)
         return 0
     for part, names in columns.items():
-        print(f"  {part:10} {'at most ' + duration(planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
-    print(f"at most {duration(planned(left))}, besides set-up and build")
+        print(f"  {part:10} {'at most ' + duration(profiles.planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
+    print(f"at most {duration(profiles.planned(left))}, besides set-up and build")
     return 0
 
 

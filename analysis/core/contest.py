@@ -4,7 +4,6 @@ import math
 from analysis.core import timing
 from analysis.core.gather import gather
 from analysis.core.statistics import median
-from analysis.core.timing import PHASES
 
 
 def grouped(records):
@@ -68,7 +67,7 @@ def _cell(rows, verdict):
     row |= {"processes": len(good), "step_us": step, "low_us": min(values("step_us")), "high_us": max(values("step_us")),
             "passes": passes, "pass_us": step / passes, "setup_us": median(values("setup_us")),
             "memory_bytes": median(values("memory_bytes")), "position_error": first.get("position_error")}
-    shares = {phase: median(values(f"phase_{phase}")) for phase in PHASES}
+    shares = {phase: median(values(f"phase_{phase}")) for phase in timing.PHASES}
     if not math.isnan(shares["other"]):
         row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
     return row

@@ -5,7 +5,6 @@ from functools import cache
 from analysis.core.registry import NULL, TWIN
 from analysis.core.timing import NO_VARIANCE
 from analysis.map import carry, timed
-from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
@@ -52,7 +51,7 @@ class Results:
 
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
-        return [one for one in layers(self.registry)[name] if one in self.implementations]
+        return [one for one in timed.layers(self.registry)[name] if one in self.implementations]
 
     def samples(self, natural_only=False):
         """Rows of processes that timed ranked contenders."""

@@ -10,7 +10,6 @@ from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
 from study.core.front import duration, follow, snakemake
 from study.core.node import forget, home, own_sets, refusals
-from study.core.studyset import StudySet
 
 PROFILES = ROOT / "study" / "cluster"
 GRACE = 15  # minutes over a budget: the last cell's limit, at most 600 s, and what a node does first
@@ -40,10 +39,10 @@ def run(profile, only, chosen, folder, cluster, columns):
         end_jobs(folder, cluster)
         _plan(profile, only, chosen, folder, columns)
         if not (folder / "set.json").exists():
-            _workflow(StudySet(folder), cluster, columns, "set.json")
+            _workflow(sets.StudySet(folder), cluster, columns, "set.json")
         known = sets.opened(folder)  # of a question that is still the same; that the nodes are its own they see themselves
         write_json(folder / "set.json", known.facts | sets.kept_facts(known, profile, only, chosen))
-        studyset = StudySet(folder)
+        studyset = sets.StudySet(folder)
         studyset.clear()
         sets.reopen(studyset, columns)
         sets.need_tables(studyset)

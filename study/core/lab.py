@@ -13,7 +13,6 @@ from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
-from study.core.executor import program_of
 
 ROOM = 2**20  # bytes: where less is free, a failure is none of the program
 BETWEEN = 0.005  # s that the study itself takes for a cell, about: it writes the record, and plans
@@ -92,7 +91,7 @@ class Lab:
     left = property(lambda self: self.budget - self.spent)  # seconds of the budget, counted by the records: the same in a run that was resumed
 
     def _made(self, cell, drop):
-        program = program_of(*cell.built.split("@"))
+        program = executor.program_of(*cell.built.split("@"))
         if not cell.own and not (ROOT / program).exists():  # `mbs` is there, or nothing is
             return self.skip(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:

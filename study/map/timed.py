@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 from analysis.core.timing import LEFT_OUT, differing
 from analysis.map import timed
-from analysis.map.timed import layers, leaders, timed_rows
 from study.core import contest
 from study.core.cell import CONTROL, Cell, Contender, twin_of
 from study.core.timing import measure
@@ -42,7 +41,7 @@ class TimedScene:
             pairs = [one.blas for one in self.costs if one.ranked and self.scene.fill is None]
             control = [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
             self.records = self.processes([*self.costs, *control], count, "time")
-            wrong = differing(timed_rows(self.records))
+            wrong = differing(timed.timed_rows(self.records))
             if not wrong:
                 return
             for one in [one for one in self.costs if one.name in wrong]:
@@ -52,7 +51,7 @@ class TimedScene:
     def again(self, count):
         """Processes 1 … `count` of those who lead, among the libraries or among all, and of the fastest of all."""
         rankings = self.rankings
-        names = leaders(rankings.values())
+        names = timed.leaders(rankings.values())
         if names:
             names.add(rankings["all"].winner)
         chosen = [one for one in self.costs if one.name in names]
@@ -62,8 +61,8 @@ class TimedScene:
 
     @property
     def rankings(self):
-        scene = timed.Scene(timed_rows(self.records))
-        return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
+        scene = timed.Scene(timed.timed_rows(self.records))
+        return {layer: scene.rank(names) for layer, names in timed.layers(self.lab.registry).items()}
 
     def processes(self, contenders, count, role):
         """Their records. The pilots decide how many samples fill a process, never what a sample is."""
