@@ -1,12 +1,9 @@
-# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast.
+# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast. study/README.md says why.
 #
-# In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the ratio of two is the median over
-# samples of their quotient there. Processes differ by the layout of memory, and each of the program's layouts (LAYOUTS, whose functions lie in
-# other places) by where its code lies, as another build would. The ratio is the mean of its logarithm over layouts, of each the mean over its
-# processes, with Student's interval over layouts [Kalibera and Jones 2013]: what a new build on a machine of this kind will show.
-#
-# Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
-# the clock what others did meanwhile. `clock_us` beside them tells how much that was.
+# In a process all contenders take turns: the ratio of two is the median over samples of their quotient. In all it is the mean of its logarithm over
+# layouts of the program (LAYOUTS), of each the mean over its processes, with Student's interval over layouts [Kalibera and Jones 2013]: what a new
+# build on a machine of this kind will show. Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one
+# would lose by the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
 from collections import Counter, namedtuple
 from dataclasses import replace

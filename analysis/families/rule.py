@@ -36,7 +36,8 @@ def judged(tables, registry):
     if len(set(data.family.values())) < FAMILIES:
         return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
-    ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
+    ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
+                              columns=["family", "scheme", "implementation", "ratio"])
     rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
     return {name: pandas.DataFrame(found) for name, found in rows.items()} | {"by_hand": by_hand.table(data, WORTH, UNKNOWN)}
 
@@ -77,13 +78,10 @@ def document(tables):
 
 def _ratios(data, family, rest):
     """Measured over predicted times of a family left out, with all that have a model."""
-    rows = []
     for (scheme, name), found in rest.models.items():
         times = data.us[scheme][name].dropna()
         times = times[[scene for scene in times.index if data.family[scene] == family and data.usual[scheme][scene]]]
-        rows += [{"family": family, "scheme": scheme, "implementation": name, "ratio": ratio}
-                 for ratio in times / predicted(found, data.features.loc[times.index])]
-    return pandas.DataFrame(rows, columns=["family", "scheme", "implementation", "ratio"])
+        yield from ((family, scheme, name, ratio) for ratio in times / predicted(found, data.features.loc[times.index]))
 
 
 def _range(ratios, scheme, name, without=None):

@@ -1,7 +1,5 @@
-# Which processes of a timed scene count, and who is fastest there.
-#
-# A scene has a few processes of all ("time"), and then more of those who lead ("again"), with more samples. Leaders are
-# compared by the latter alone: they are the better ones, and nobody was chosen by them.
+# Which processes of a timed scene count, and who is fastest there: a few of all ("time"), and then more of those who lead ("again"), with more
+# samples. Leaders are compared by the latter alone: they are the better ones, and nobody was chosen by them.
 from dataclasses import replace
 
 from analysis.core import timing
