@@ -38,7 +38,7 @@ def main(arguments):
         return 2
     except KeyboardInterrupt as cause:
         print("\ninterrupted; what is finished is kept. To resume:\n  " + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
-        return 128 + (cause.number if isinstance(cause, child.Signalled) else signal.SIGINT)
+        return 128 + (cause.args[0] if cause.args else signal.SIGINT)
 
 
 def run(arguments):

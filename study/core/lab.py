@@ -44,7 +44,8 @@ class Lab:
         """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the others run at once on all cores.
         With `drop`, what is left when the budget is spent gets a record that says so: order cells by their worth."""
         cells = [cell.settled() for cell in cells]
-        self._expect(cells)
+        self.asked |= {self._name(cell) for cell in cells}
+        self.tell()
         found, todo, known, before = {}, [], set(self.names), self.spent
         for cell in dict.fromkeys(cells):
             if (self.base / self._name(cell)).exists():
@@ -68,7 +69,8 @@ class Lab:
 
     def skip(self, cell, status, reason):
         cell = cell.settled()
-        self._expect([cell])
+        self.asked.add(self._name(cell))
+        self.tell()
         return self._keep(cell, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
                                  "command": executor.command_of(cell), "context": self._context(cell, self.set.facts["context"])})
 
@@ -79,10 +81,10 @@ class Lab:
             write_json(path, document)
         return os.path.relpath(path, ROOT) if path.is_relative_to(ROOT) else str(path)
 
-    def tell(self, text):
-        """Shown beside the cells that are done."""
-        self.text = text
-        self._show_state()
+    def tell(self, text=None):
+        """How many cells are done, and beside it this text from now on."""
+        self.text = self.text if text is None else text
+        self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
 
     def show(self, cells, text):
         """Leaves what there is to say where the front looks for it."""
@@ -109,13 +111,6 @@ class Lab:
     def _asked_of(self, cell):
         return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
 
-    def _expect(self, cells):
-        self.asked |= {self._name(cell) for cell in cells}
-        self._show_state()
-
-    def _show_state(self):
-        self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
-
     @staticmethod
     def _context(cell, context):
         """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
@@ -132,7 +127,7 @@ class Lab:
             with self.lock:
                 self.names[record.name] = None  # in their order
                 self.spent += taken
-            self._show_state()
+            self.tell()
         return record
 
     def _name(self, cell):

@@ -41,9 +41,8 @@ class StudySet(Folder):
                 known.update(facts_of(self.folder)["programs"])
                 write_json(self.folder / "set.json", self.facts | {"programs": found | known})
                 known.update(found | known)
-        for name in found:
-            if known[name] != found[name]:
-                raise _other(self.folder, f"programs: {name} was built anew")
+        if changed := [name for name in found if known[name] != found[name]]:
+            raise _other(self.folder, f"programs: {changed[0]} was built anew")
 
     def clear(self):
         """Removes what a process that was killed has left, in the set's own folders only."""
