@@ -31,8 +31,7 @@ def read(path):
 
 def conform(frame, columns, what):
     """The table with exactly these columns, in this order and of these types; what it lacks is empty."""
-    unknown = [name for name in frame.columns if name not in columns]
-    if unknown:
+    if unknown := [name for name in frame.columns if name not in columns]:
         raise StudyError(f"{what}: columns that its schema does not know: {', '.join(unknown)}")
     frame = frame.reindex(columns=list(columns))
     for name, (kind, _, _) in columns.items():

@@ -86,8 +86,7 @@ def below(figure, columns, more):
 
 def legend(axes, order):
     """A legend right of the axes, entries sorted by `order(label)`."""
-    pairs = sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1]))
-    if pairs:
+    if pairs := sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1])):
         axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
 
 

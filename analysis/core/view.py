@@ -14,8 +14,7 @@ from analysis.core.registry import Registry
 def facts_of(folder):
     """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
     found = read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
-    unknown = [part for part in found["parts"] if part not in [*parts()]]
-    if unknown:
+    if unknown := [part for part in found["parts"] if part not in [*parts()]]:
         raise StudyError(f"{folder / 'set.json'} is damaged (parts: {unknown[0]!r} is none of {', '.join(parts())})")
     return found
 

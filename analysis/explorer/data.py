@@ -37,8 +37,7 @@ def of_families(folder):
         for scene, cells in table[(table.scheme == form) & table.scene.isin(timed)].groupby("scene", sort=False):
             rows = timed[scene][timed[scene].status == "ok"]
             good = (cells.status == "ok") & (cells.verdict == "agrees")
-            able = list(cells.implementation[good])
-            if able:
+            if able := list(cells.implementation[good]):
                 yield Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
                               {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
                               cells.set_index("implementation").look_us.dropna().to_dict(),
@@ -52,8 +51,7 @@ def of_map(folder):
         rows = results.rows(scene)
         good = rows[rows.status == "ok"]
         lost = rows[~rows.status.isin(["ok", "dropped"])].drop_duplicates("implementation").set_index("implementation")
-        able = [name for name in names if name in set(good.implementation) and name not in lost.index]
-        if able:
+        if able := [name for name in names if name in set(good.implementation) and name not in lost.index]:
             yield Contest("map", scene, SCHEMES[0], rows.variables.iloc[0], rows.fill_percent.iloc[0], good, able,
                           {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
                           [name for name in names if name in lost.index and lost.status[name] in FAILURES],
@@ -142,8 +140,7 @@ def size_of(contests):
     """{kind of a scene: (a, b)}: n = a N + b for scenes KIND:N, where all that were timed agree on it."""
     sizes = {}
     for one in contests:
-        known = re.fullmatch(r"([\w-]+):(\d+)((?:,dimension=\d)?)", one.scene)
-        if known:
+        if known := re.fullmatch(r"([\w-]+):(\d+)((?:,dimension=\d)?)", one.scene):
             sizes.setdefault((known[1], known[3]), {})[int(known[2])] = one.n
     lines = {kind: numpy.polyfit(list(found), list(found.values()), 1) for kind, found in sizes.items() if len(found) > 1}
     return [[*kind, round(a, 6), round(b, 6) + 0.0] for kind, (a, b) in lines.items()

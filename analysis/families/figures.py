@@ -10,7 +10,6 @@ from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
 FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
-LABEL = "non-zeros a column of the factor L (AMD's order)"  # of it
 
 
 def draw(tables, view):
@@ -41,7 +40,7 @@ def real_map(tables, look, registry):
         shown |= {name: look.colour(name) for name in members}
         left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if row.settled else "white", linestyle="none")
-    _scales(left, rows.n, rows[DECIDES], LABEL)
+    _scales(left, rows.n, rows[DECIDES], "non-zeros a column of the factor L (AMD's order)")
     left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]

@@ -43,8 +43,7 @@ def within(paired, first, second):
 def _of_scenes(timed):
     for _, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
         paired = timing.Paired(group)
-        pair = _leaders(paired)
-        if pair:
+        if pair := _leaders(paired):
             variances = nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair))
             names = " ".join(group[group.implementation == pair[0]].record)
             yield from ({"source": source, "variance": variance, "record": names} for source, variance in variances.items())

@@ -84,10 +84,6 @@ def solvers(results):
             _behind(results, "SuperLU", superlu, "WSMP", wsmp)]
 
 
-def _needed(pair):
-    return f"{pair} were not both timed at {COVERED} to {FIGURES_END} variables."
-
-
 def _fastest(results, klu, others, low, high):
     span = f"to {high} variables" if low == 0 else f"from {low} to {high} variables"
     found = results.over_sizes(others, klu, low, high, COVERED)
@@ -100,7 +96,7 @@ def _share_of_speed(results, klu, cholmod):
     rule = Rule(CHOLMOD_OF_KLU - SPEED_BAND, CHOLMOD_OF_KLU + SPEED_BAND)
     found = results.over_sizes(klu, cholmod, high=FIGURES_END, reaching=COVERED)
     if not found:
-        return unmeasured(head, _needed("KLU and CHOLMOD"), rule, " %")
+        return unmeasured(head, f"KLU and CHOLMOD were not both timed at {COVERED} to {FIGURES_END} variables.", rule, " %")
     cases = [(f"n = {one.size:g}", [100 * value for value in one[:3]], one.record) for one in found]
     return judged(head, cases, rule, f"KLU ÷ {', '.join(dict.fromkeys(one.fast for one in found))}", " %")
 
@@ -111,7 +107,7 @@ def _behind(results, slow_system, slow, fast_system, fast):
     if any(results.fastest(results.natural(size), slow) in both for size in results.sizes if size <= FIGURES_END):
         return row(head, INCOMPARABLE, f"{', '.join(both)} stands for both, and is {slow_system}'s fastest stand-in.", Rule(low=1).text("×"))
     return compared(head, results.over_sizes(slow, fast, high=FIGURES_END, reaching=COVERED), Rule(low=1),
-                    _needed(f"{slow_system}'s and {fast_system}'s stand-ins"))
+                    f"{slow_system}'s and {fast_system}'s stand-ins were not both timed at {COVERED} to {FIGURES_END} variables.")
 
 
 def pivoting(results):

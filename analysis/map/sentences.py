@@ -16,8 +16,7 @@ def answers(tables, view):
     dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
     if dense:
         found.append({"text": f"As the tangent fills, dense libraries overtake: {', '.join(dense)}.", "anchor": "maps"})
-    whole = [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]
-    if whole:
+    if whole := [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]:
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})

@@ -51,8 +51,7 @@ def prices(results, names):
         failed = [cell.scene for cell in cells if name in cell.failed and cell.scene not in ratios]
         rough = {cell.scene: pilots[cell.scene].get(name) / pilots[cell.scene].get(cell.ranking.winner) for cell in cells
                  if cell.scene not in (*ratios, *failed) and pilots[cell.scene].reindex([name, cell.ranking.winner]).notna().all()}
-        known = ratios | rough
-        if known:
+        if known := ratios | rough:
             where = max(known, key=known.get)
             rows.append({"implementation": name, "mean": float(numpy.exp(numpy.mean(numpy.log(list(known.values()))))), "worst": known[where],
                          "where": where, "cells": len(known), "of": len(cells), "rough": len(rough), "failed": len(failed)})

@@ -19,8 +19,7 @@ ENDING = 120  # s that jobs may take to end
 def profile_folder(name):
     """Of a name in study/cluster, or a path; StudyError if it is no profile."""
     folder = PROFILES / name if (PROFILES / name).is_dir() else Path(name).absolute()
-    missing = [one for one in ("config.yaml", "submit", "status", "cancel") if not (folder / one).is_file()]
-    if missing:
+    if missing := [one for one in ("config.yaml", "submit", "status", "cancel") if not (folder / one).is_file()]:
         known = ", ".join(sorted(path.parent.name for path in PROFILES.glob("*/config.yaml")))
         raise StudyError(f"--cluster: {folder} is no profile ({missing[0]} is missing); known: {known}")
     return folder
@@ -79,8 +78,7 @@ def _workflow(studyset, cluster, columns, target):
 def end_jobs(folder, cluster):
     """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
     path, end = home(folder) / "jobs", time.monotonic() + ENDING
-    ids = [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []
-    if ids:
+    if ids := [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []:
         subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
     while any(runs(folder, cluster, one) for one in ids):
         if time.monotonic() > end:

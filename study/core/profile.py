@@ -78,6 +78,5 @@ def by_share(columns):
 def need_keys(path, what, data, keys):
     if not isinstance(data, dict):
         raise StudyError(f"{path}: {what} needs settings, found {type(data).__name__}")
-    wrong = sorted(map(str, set(data) ^ keys))
-    if wrong:
+    if wrong := sorted(map(str, set(data) ^ keys)):
         raise StudyError(f"{path}: {what}: missing or unknown: {', '.join(wrong)}")

@@ -10,8 +10,8 @@ LAYOUTS = 8  # of the program, which processes take in turn: harness/mbs/CMakeLi
 
 
 def measure(lab, scene, contenders, *, processes, repetitions, settings=(), role="time", seconds=120.0):
-    """Records of a scene, as long as the budget lasts: a process a number and environment. Those on another BLAS pair or
-    build have processes of their own, with the ANCHOR in common. Who ends a process is left out with a record that says
+    """Records of a scene, as long as the budget lasts: a process a number and environment. Those on another BLAS pair
+    have processes of their own, with the ANCHOR in common. Who ends a process is left out with a record that says
     how, and the environment is measured again without it. Several scenes: call for each."""
     groups = by_environment(contenders)
     words = (*settings, f"--benchmark_repetitions={repetitions}")
@@ -20,8 +20,7 @@ def measure(lab, scene, contenders, *, processes, repetitions, settings=(), role
     found = []
     for name, group in groups.items():
         if name != main and common.variant not in [one.variant for one in group]:
-            label = f"{common.variant}+{group[0].build or group[0].blas}"
-            group = (replace(common, name=label, blas=group[0].blas, build=group[0].build), *group)
+            group = (replace(common, name=f"{common.variant}+{group[0].blas}", blas=group[0].blas), *group)
         found += _environment(lab, Cell("bench", scene, group, words, role, timed=True, seconds=seconds), processes)
     return found
 
@@ -31,9 +30,10 @@ def _environment(lab, cell, processes):
     lost = []
     while cell.contenders:
         found, number = [], 0
-        while number < processes or _again(found, processes):
+        # A further process takes the place of one in which others ran: at most a quarter more in all.
+        while number < processes + processes // 4 and number - sum(map(disturbed, found)) < processes:
             number += 1
-            program = cell.program if cell.contenders[0].build else f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
+            program = f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
             record = lab.run([replace(cell, number=number, program=program, settings=(*cell.settings, "--seed", number))], drop=True)[0]
             found.append(record)
             if record.status == "dropped":
@@ -47,11 +47,6 @@ def _environment(lab, cell, processes):
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
     return lost
-
-
-def _again(found, processes):
-    """Whether a further process is asked for, in place of one in which others ran: at most a quarter more in all."""
-    return len(found) < processes + processes // 4 and len(found) - sum(map(disturbed, found)) < processes
 
 
 def _culprits(lab, cell, record):

@@ -51,8 +51,7 @@ class TimedScene:
     def again(self, count):
         """Processes 1 … `count` of those who lead, among the libraries or among all, and of the fastest of all."""
         rankings = self.rankings
-        names = timed.leaders(rankings.values())
-        if names:
+        if names := timed.leaders(rankings.values()):
             names.add(rankings["all"].winner)
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
