@@ -96,8 +96,8 @@ def _steps(data, rule, ratios, registry):
     for (scheme, name), found in rule.models.items():
         low, high = _range(ratios, scheme, name)
         yield from ({"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
-                     "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name], "low": low, "high": high,
-                     "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items())
+                     "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name],
+                     "low": low, "high": high, "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items())
 
 
 def _held(data, rests, ratios):
@@ -126,7 +126,8 @@ def _alone(data):
                     _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(),
                                                            costs.to_numpy() * rest.weights(costs.index)[:, None])
                     losses += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
-        yield {"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records}
+        yield {"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses),
+               "record": data.records}
 
 
 class _Rule:
