@@ -1,5 +1,4 @@
 # The command lines of the study: study/run, study/figures, study/store; and the way into the tools beside the parts.
-import importlib
 import importlib.util
 import os
 import shlex
@@ -12,15 +11,12 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.profile import columns_of, planned
-from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
-                                 writable)
+from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished, writable)
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
-TOOLS = {"view": "study.tools.viewer.main", "advise": "study.tools.advise.main", "against": "study.tools.against",
-         "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
-         "new": "study.tools.new", "paper": "study.tools.paper.main", "sweep": "study.tools.sweep"}
+TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
+         "new": "new", "paper": "paper.main", "sweep": "sweep"}  # in study/tools
 
 
 def main(arguments):
@@ -29,7 +25,7 @@ def main(arguments):
     try:
         if command in TOOLS:  # imported only now: they need modules that study/run may have to install
             need_modules()
-            return getattr(importlib.import_module(TOOLS[command]), command)(rest)
+            return getattr(importlib.import_module(f"study.tools.{TOOLS[command]}"), command)(rest)
         return {"run": run, "figures": figures}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
@@ -41,9 +37,8 @@ def main(arguments):
         print(f"study/{command}: {error.filename or 'the system'}: {error.strerror}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as cause:
-        print("\ninterrupted; what is finished is kept. To resume:\n  "
-              + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
-        return 128 + (cause.number if isinstance(cause, child.Signalled) else signal.SIGINT)
+        print("\ninterrupted; what is finished is kept. To resume:\n  " + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
+        return 128 + (cause.args[0] if cause.args else signal.SIGINT)
 
 
 def run(arguments):
@@ -51,8 +46,7 @@ def run(arguments):
                     epilog="Interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
     parser.add_argument("--profile", default="quick", help=f"how much: {', '.join(profiles.names())} (quick)")
     parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
-    parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION",
-                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION", help="only these implementations (folder or folder/variant)")
     parser.add_argument("--results", type=directory, metavar="DIR", help="results directory (results/local/PROFILE)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
     parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")
@@ -76,10 +70,13 @@ def run(arguments):
     writable(folder)
     if way:
         need_modules()
-        cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
+        cluster.run(profile, options.only, chosen, folder, way, profiles.columns_of(profile, chosen))
     else:
         _run_here(profile, options.only, chosen, folder, options.wait)
-    _say_disturbance(folder)
+    for part in parts():  # what else ran while they timed
+        path = folder / part / "answers.json"
+        if said := path.exists() and read_object(path).get("disturbance"):
+            print(f"{part}: {said}")
     print(f"site: {folder / 'index.html'}")
     return 0
 
@@ -89,20 +86,12 @@ def _run_here(profile, only, chosen, folder, wait):
         set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, only, chosen)
-        columns = columns_of(profile, chosen)
+        columns = profiles.columns_of(profile, chosen)
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
-              f"{duration(planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
+              f"{duration(profiles.planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
-
-
-def _say_disturbance(folder):
-    """What else ran while the parts of a set timed."""
-    for part in parts():
-        path = folder / part / "answers.json"
-        if said := path.exists() and read_object(path).get("disturbance"):
-            print(f"{part}: {said}")
 
 
 def figures(arguments):
@@ -142,14 +131,14 @@ def dry_run(profile, chosen, folder, only, way):
     if only and (ROOT / "build" / "mbs").exists():
         select(listed(), only)
     print(f"profile {profile.name}: {profile.title}\nresults: {folder}\nleft out: {profile.dropped}")
-    columns = columns_of(profile, chosen)
+    columns = profiles.columns_of(profile, chosen)
     left = unfinished(StudySet(folder), columns)
     if way:
         cluster.dry_run(left)
         return 0
     for part, names in columns.items():
-        print(f"  {part:10} {'at most ' + duration(planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
-    print(f"at most {duration(planned(left))}, besides set-up and build")
+        print(f"  {part:10} {'at most ' + duration(profiles.planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
+    print(f"at most {duration(profiles.planned(left))}, besides set-up and build")
     return 0
 
 

@@ -2,16 +2,13 @@
 import math
 
 from analysis.core import timing
+from analysis.core.gather import gather
 from analysis.core.statistics import median
-from analysis.core.timing import PHASES
 
 
 def grouped(records):
     """{role: its records}; those of who was left out of a process are with the others."""
-    found = {}
-    for record in records:
-        found.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
-    return found
+    return gather((record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), record) for record in records)
 
 
 def contests(by_role, role):
@@ -32,16 +29,13 @@ def by_scene(records):
 
 
 def verdicts_of(records):
-    """{(scene, implementation): (verdict, reason)} of the gate. Who was asked alone was so because a process of several
-    ended without verdicts."""
+    """{(scene, implementation): (verdict, reason)} of the gate. Who was asked alone was so because a process of several ended without verdicts."""
     return {(record.cell["scene"], name): found for record in sorted(records, key=lambda one: -len(one.cell["contenders"]))
             for name, found in record.verdicts.items()}
 
 
 def cells_of(rows, scene, verdicts):
-    groups = {}
-    for row in rows.to_dict("records"):
-        groups.setdefault(row["implementation"], []).append(row)
+    groups = gather((row["implementation"], row) for row in rows.to_dict("records"))
     return {name: _cell(groups[name], verdicts.get((scene, name))) for name in sorted(groups)}
 
 
@@ -61,9 +55,9 @@ def _cell(rows, verdict):
     good = [row for row in rows if row["status"] == "ok"]
     lost = [row for row in rows if row["status"] not in ("ok", "dropped", "slower")]
     first = (lost or good or rows)[0]
-    row = {"implementation": first["implementation"], "status": "ok", "reason": "", "verdict": "", "record": first["record"]}
+    row = {key: first[key] for key in ("implementation", "status", "reason", "record")} | {"verdict": ""}
     if lost or not good:
-        return row | {"status": first["status"], "reason": first["reason"]}
+        return row
     if verdict:
         row["verdict"] = verdict[0]
         if verdict[0] not in ("agrees", "dropped"):
@@ -73,7 +67,7 @@ def _cell(rows, verdict):
     row |= {"processes": len(good), "step_us": step, "low_us": min(values("step_us")), "high_us": max(values("step_us")),
             "passes": passes, "pass_us": step / passes, "setup_us": median(values("setup_us")),
             "memory_bytes": median(values("memory_bytes")), "position_error": first.get("position_error")}
-    shares = {phase: median(values(f"phase_{phase}")) for phase in PHASES}
+    shares = {phase: median(values(f"phase_{phase}")) for phase in timing.PHASES}
     if not math.isnan(shares["other"]):
         row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
     return row

@@ -20,8 +20,7 @@ def finished(rows):
 
 
 def pareto(rows):
-    """Index of the rows that nobody beats, the fastest first: every faster run has an error larger by more than
-    SAME."""
+    """Index of the rows that nobody beats, the fastest first: every faster run has an error larger by more than SAME."""
     found, smallest = [], numpy.inf
     ordered = finished(rows).sort_values(["time", "error"], kind="stable")
     for index, error in zip(ordered.index, ordered.error):

@@ -1,5 +1,4 @@
-# Records: one for every cell, what was run and what came of it. Loose files while a study runs, an archive a
-# part in a stored set.
+# Records: one for every cell, what was run and what came of it. Loose files while a study runs, an archive a part in a stored set.
 #
 # A record's file is {"sha256": D, "record": {…}} in two lines; D is the digest of the second one's value as it
 # stands there, so that a changed or truncated file is named and never believed.
@@ -24,9 +23,8 @@ FORM = re.compile(r'\{"sha256": "([0-9a-f]{64})",\n"record": (\{.*\})\}\n', re.S
 
 @dataclass(frozen=True)
 class Record:
-    """What a cell was and how it ended. `status`: "done", or why there is no output: "crashed", "timeout",
-    "out-of-memory", "refused" (by the program, in a line), or of a cell that was not run "excluded",
-    "unavailable", "not-reached", "dropped" (the budget), always with a `reason`."""
+    """What a cell was and how it ended. `status`: "done", or why there is no output: "crashed", "timeout", "out-of-memory", "refused" (by the
+    program, in a line), or of a cell that was not run "excluded", "unavailable", "not-reached", "dropped" (the budget), always with a `reason`."""
     name: str        # its file in raw/PART: "COLUMN/ROLE/WHO@WHAT-ID.json"
     cell: dict       # study/core/cell.py
     status: str
@@ -73,8 +71,7 @@ def from_text(text, name, where):
     """The Record in `text`; StudyError naming `where` if it is not what was written."""
     found = FORM.fullmatch(text)
     if not found or digest(found[2]) != found[1]:
-        raise StudyError(f"{where} is {'changed' if found else 'truncated or no record'}: "
-                         "remove it to have it measured again, or restore it")
+        raise StudyError(f"{where} is {'changed' if found else 'truncated or no record'}: remove it to have it measured again, or restore it")
     data = json.loads(found[2])
     wrong = {*set(KINDS) - set(data), *set(data) - set(KINDS) - set(MORE),
              *(key for key, kind in (KINDS | MORE).items() if key in data and not isinstance(data[key], kind))}
@@ -84,7 +81,6 @@ def from_text(text, name, where):
 
 
 def write(path, data):
-    """Writes the fields of a Record, without its name."""
     write_text(path, to_text(data))
 
 

@@ -23,18 +23,15 @@ def read(path):
     """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
     found = yaml.safe_load(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
-        wrong = [name for name, one in columns.items()
-                 if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
+        wrong = [name for name, one in columns.items() if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
         if wrong or "record" not in columns:
-            raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are "
-                             f"{', '.join(TYPES)}")
+            raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are {', '.join(TYPES)}")
     return found
 
 
 def conform(frame, columns, what):
     """The table with exactly these columns, in this order and of these types; what it lacks is empty."""
-    unknown = [name for name in frame.columns if name not in columns]
-    if unknown:
+    if unknown := [name for name in frame.columns if name not in columns]:
         raise StudyError(f"{what}: columns that its schema does not know: {', '.join(unknown)}")
     frame = frame.reindex(columns=list(columns))
     for name, (kind, _, _) in columns.items():
@@ -52,8 +49,7 @@ def conform(frame, columns, what):
 
 
 def write_tables(folder, part, tables, records):
-    """Writes the tables of a part into folder/PART and the digests of these and of the records; returns them as
-    the schema has them."""
+    """Writes the tables of a part into folder/PART and the digests of these and of the records; returns them as the schema has them."""
     schema = of_part(part)
     if set(tables) != set(schema):
         raise StudyError(f"analysis/{part}/tables.py makes {sorted(tables)}, its schema has {sorted(schema)}")
@@ -62,8 +58,7 @@ def write_tables(folder, part, tables, records):
     for name, columns in schema.items():
         found[name] = conform(tables[name], columns, f"{part}/{name}.csv")
         write(base / f"{name}.csv", lambda partial, table=found[name]: table.to_csv(partial, index=False))
-    write_json(base / DIGESTS, {"records": digest_of(records),
-                                "tables": {name: digest(base / f"{name}.csv") for name in found}})
+    write_json(base / DIGESTS, {"records": digest_of(records), "tables": {name: digest(base / f"{name}.csv") for name in found}})
     return found
 
 
@@ -73,20 +68,14 @@ def digest_of(records):
 
 def records_of(folder, part, context):
     """All records of a part, by name; StudyError naming a table that was changed, a record that was or that is of another machine or
-    commit than the set's `context`."""
+    commit than the set's `context`, or if those of a stored set are not those that its tables were made of."""
     need_unchanged(folder, part)
-    found = read_part(folder, part)
-    need_same_records(folder, part, found)
+    found, archive, kept = read_part(folder, part), archive_of(folder, part), Path(folder) / part / DIGESTS
+    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(found):
+        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
     for record in found:
         need_same_origin(record, context, f"{folder}/raw/{part}")
     return found
-
-
-def need_same_records(folder, part, records):
-    """StudyError if a stored set's records are not those that its tables were made of."""
-    archive, kept = archive_of(folder, part), Path(folder) / part / DIGESTS
-    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(records):
-        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
 
 
 def read_table(folder, part, name):

@@ -72,7 +72,6 @@ def _module(part, name):
 
 
 def _frame(folder, part):
-    """What the frame of every page shows."""
     view = View(folder, part)
     return {"part": part, "parts": parts(), "pages": pages(), "question": parts().get(part, ""), "facts": view.facts,
             "context": view.context, "libraries": view.registry.versions}
@@ -80,8 +79,7 @@ def _frame(folder, part):
 
 def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
-    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"number": number, "name": name, "code": code}
     environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)

@@ -13,19 +13,12 @@ def median(values):
     return float(numpy.median(values))
 
 
-def power_law_exponent(sizes, times):
-    """Slope of log(time) over log(size) by least squares; NaN for fewer than three sizes."""
+def power_law(sizes, times):
+    """(exponent, low, high): slope of log(time) over log(size) by least squares, with Student's interval, whose width also says how far
+    the times are from a power law; NaN for fewer than three sizes."""
     if len(sizes) < 3:
-        return numpy.nan
-    return float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
-
-
-def power_law_interval(sizes, times):
-    """(exponent, low, high): `power_law_exponent` with Student's interval of the slope, whose width also says how far the
-    times are from a power law."""
-    exponent = power_law_exponent(sizes, times)
-    if numpy.isnan(exponent):
-        return exponent, numpy.nan, numpy.nan
+        return (numpy.nan,) * 3
     from scipy.stats import linregress
+    exponent = float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
     half = special.stdtrit(len(sizes) - 2, (1 + CONFIDENCE) / 2) * linregress(numpy.log(sizes), numpy.log(times)).stderr
     return exponent, exponent - half, exponent + half

@@ -10,13 +10,13 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.transforms import Bbox
 
 from analysis.core.files import write
+from analysis.core.gather import gather
 from analysis.core.text import number
 
 # Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
-SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A",
-          "#A6A6D9", "#00707A")
+SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A", "#A6A6D9", "#00707A")
 ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#5B3A9E")
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")
@@ -44,36 +44,25 @@ register_scale(_Log)
 
 
 class Look:
-    """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker of its own; a dash a variant."""
+    """How each implementation is drawn, by its place in the registry: a colour a folder, a shade of it and a dash a variant; its own marker."""
 
     def __init__(self, registry):
-        self.place, self.shade, self.hue = {}, {}, {}
-        palettes = {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
-        for name in registry.variants:
-            folder = name.split("/")[0]
-            if folder not in self.hue:
-                self.hue[folder] = next(palettes[name in registry.dense])
-            self.place[name] = len(self.place)
-            self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
+        self.place = {name: place for place, name in enumerate(registry.variants)}
+        self.shade, self.hue, palettes = {}, {}, {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
+        for folder, names in gather((name.split("/")[0], name) for name in registry.variants).items():
+            self.hue[folder] = next(palettes[names[0] in registry.dense])
+            self.shade |= {name: shade for shade, name in enumerate(names)}
 
     def colour(self, name):
-        base, shade = self.hue[name.split("/")[0]], self.shade[name]
-        towards, share = SHADES[shade % len(SHADES)]
-        mixed = numpy.array(to_rgb(base)) * (1 - share)
+        towards, share = SHADES[self.shade[name] % len(SHADES)]
+        mixed = numpy.array(to_rgb(self.hue[name.split("/")[0]])) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
-
-    def marker(self, name):
-        return MARKERS[self.place[name] % len(MARKERS)]
-
-    def dash(self, name):
-        return DASHES[self.shade[name] % len(DASHES)]
 
     def line(self, name):
         """Keywords of `plot` for the series of an implementation."""
-        return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4, "marker": self.marker(name),
-                "markersize": 8 if self.marker(name) in "*PX" else 5.5, "markeredgewidth": 0.6, "markerfacecolor": self.colour(name),
-                "markeredgecolor": "white"}
+        colour, marker, dash = self.colour(name), MARKERS[self.place[name] % len(MARKERS)], DASHES[self.shade[name] % len(DASHES)]
+        return {"color": colour, "linestyle": dash, "linewidth": 1.4, "marker": marker, "markersize": 8 if marker in "*PX" else 5.5,
+                "markeredgewidth": 0.6, "markerfacecolor": colour, "markeredgecolor": "white"}
 
 
 def panels(count, columns, wide, high):
@@ -88,7 +77,7 @@ def panels(count, columns, wide, high):
     return figure, list(grid.flat[:count])
 
 
-def below(figure, columns, more=()):
+def below(figure, columns, more):
     """A legend below all of a figure, of what its axes have labels for and of `more` handles."""
     found = {label: handle for axes in figure.axes for handle, label in zip(*axes.get_legend_handles_labels())}
     handles = [*found.values(), *more]
@@ -97,20 +86,18 @@ def below(figure, columns, more=()):
 
 def legend(axes, order):
     """A legend right of the axes, entries sorted by `order(label)`."""
-    pairs = sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1]))
-    if pairs:
+    if pairs := sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1])):
         axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
 
 
-def nothing(text, size=(6, 1.2)):
+def nothing(text):
     """A figure that says what is missing, and no more."""
-    figure, axes = plt.subplots(figsize=size)
+    figure, axes = plt.subplots(figsize=(6, 1.2))
     missing(axes, text)
     return figure
 
 
 def missing(axes, text):
-    """Axes that say what is missing instead of showing nothing."""
     axes.set_axis_off()
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY, fontsize=10, wrap=True)
 
@@ -133,8 +120,7 @@ def number_axis(axis, unit=""):
         (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     low, high = axis.get_view_interval()
     decades = numpy.log10(high / low)
-    steps = (1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)
-    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_locator(LogLocator(subs=(1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: number(value) + unit))
 
 
@@ -149,18 +135,13 @@ def line_each(axes, labels, **text):
 def save(figure, path, above=""):
     """Writes a figure in the format of the suffix of `path`; equal figures give equal files. `above`: a line over all of it, which
     says of which machine and day it is, wherever it is shown."""
-    box, kind, (width, height) = _placed(figure), Path(path).suffix, figure.get_size_inches()
+    if figure.get_layout_engine():  # made once here, where `savefig` with "tight" would draw all of the figure for that
+        figure.get_layout_engine().execute(figure)
+        figure.set_layout_engine(None)
+    box, kind, (width, height) = figure.get_tightbbox().frozen(), Path(path).suffix, figure.get_size_inches()
     if above:
         line = figure.text(box.x0 / width, (box.y1 + 0.08) / height, above, fontsize=8, color=GREY, va="bottom")
         box = Bbox.union([box, line.get_window_extent().transformed(figure.dpi_scale_trans.inverted())])
     box = box.padded(matplotlib.rcParams["savefig.pad_inches"])
     write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches=box,
                                                metadata={"Date": None} if kind == ".svg" else None))
-
-
-def _placed(figure):
-    """The box of all that a figure has, inches; its layout is made once, where `savefig` with "tight" would draw all of it for that."""
-    if figure.get_layout_engine():
-        figure.get_layout_engine().execute(figure)
-        figure.set_layout_engine(None)
-    return figure.get_tightbbox().frozen()

@@ -54,11 +54,6 @@ def between(value, low, high, digits=3, more=""):
     return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)}{more})"
 
 
-def interval(ratio):
-    """`between` of a timing.Ratio."""
-    return between(ratio.value, ratio.low, ratio.high)
-
-
 def rows_of(table):
     """The table as dictionaries, None where there is nothing."""
     return table.astype(object).where(table.notna(), None).to_dict("records")

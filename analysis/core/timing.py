@@ -1,21 +1,18 @@
-# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast.
+# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast. study/README.md says why.
 #
-# In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the
-# ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory, and each of
-# the program's layouts (LAYOUTS, whose functions lie in other places) by where its code lies, as another build would. The
-# ratio is the mean of its logarithm over layouts, of each the mean over its processes, with Student's interval over layouts
-# [Kalibera and Jones 2013]: what a new build on a machine of this kind will show.
-#
-# Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
-# the clock what others did meanwhile. `clock_us` beside them tells how much that was.
+# In a process all contenders take turns: the ratio of two is the median over samples of their quotient. In all it is the mean of its logarithm over
+# layouts of the program (LAYOUTS), of each the mean over its processes, with Student's interval over layouts [Kalibera and Jones 2013]: what a new
+# build on a machine of this kind will show. Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one
+# would lose by the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
-from collections import Counter
-from dataclasses import dataclass, replace
+from collections import Counter, namedtuple
+from dataclasses import replace
 
 import numpy
 import pandas
 from scipy import special  # scipy.stats has the same functions, a hundred times slower
 
+from analysis.core.gather import gather
 from analysis.core.registry import NULL, TWIN
 
 CONFIDENCE = 0.95
@@ -29,11 +26,10 @@ COLUMNS = ("scene", "implementation", "environment", "process", "layout", "statu
 
 
 def processes(records):
-    """One row for each contender of each process of timed cells (records of `study.core.timing.measure`):
-    scene, implementation, environment, process (its number), layout (the program's, if it had one), status, reason, step_us (median over samples, with
-    the least and the largest), samples (µs a step), clock_us (the median by the clock), record, and every counter of `mbs bench` by its name."""
-    rows = [row for record in records for row in _rows(record)]
-    found = pandas.DataFrame(rows)
+    """One row for each contender of each process of timed cells (records of `study.core.timing.measure`): COLUMNS, and every counter of
+    `mbs bench` by its name. process: its number; layout: the program's, if it had one; step_us: median over samples, with the least and
+    the largest; samples: µs a step; clock_us: the median by the clock."""
+    found = pandas.DataFrame([row for record in records for row in _rows(record)])
     return found.reindex(columns=[*COLUMNS, *(name for name in found if name not in COLUMNS)])
 
 
@@ -42,11 +38,11 @@ def counted(records):
     again. So a process that failed speaks for nobody who has a record of being left out of it or was measured beside
     one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
     one alone do not count, nor do disturbed processes where most of their kind are not. Roles come without "-left-out"."""
-    records = _calm([one for one in records if not one.role.endswith(ALONE)])
-    out, groups = {}, {}
-    for one in records:
-        chosen = out if one.role.endswith(LEFT_OUT) else groups
-        chosen.setdefault(_asked(one), []).append(one)
+    records = [one for one in records if not one.role.endswith(ALONE)]
+    kinds = gather(((*_asked(one), one.role, *one.cell["contenders"]), (disturbed(one), one)) for one in records)
+    noisy = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
+    records = [one for one in records if id(one) not in noisy]
+    out, groups = (gather((_asked(one), one) for one in records if one.role.endswith(LEFT_OUT) == left) for left in (True, False))
     found = []
     for one in records:
         lost = {name for other in out.get(_asked(one), []) for name in other.cell["contenders"]}
@@ -55,15 +51,6 @@ def counted(records):
         elif not _replaced(one, groups[_asked(one)], lost):
             found.append(one)
     return found
-
-
-def _calm(records):
-    """Without disturbed processes, where most of the same question were calm."""
-    kinds = {}
-    for one in records:
-        kinds.setdefault((*_asked(one), one.role, *one.cell["contenders"]), []).append((disturbed(one), one))
-    lost = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
-    return [one for one in records if id(one) not in lost]
 
 
 def disturbed(record):
@@ -98,8 +85,7 @@ def _rows(record):
                "layout": cell.get("program", ""), "status": status, "reason": reason, "record": record.name}
         if status == "ok":
             samples = [one / found["steps"] for one in found["cpu_us"]]
-            counters = {key: value for key, value in found.items()
-                        if isinstance(value, (int, float)) and key not in ("step_us", "iterations")}
+            counters = {key: value for key, value in found.items() if isinstance(value, (int, float)) and key not in ("step_us", "iterations")}
             row = counters | row | {"step_us": float(numpy.median(samples)), "low_us": min(samples), "high_us": max(samples),
                                     "samples": tuple(samples), "clock_us": float(numpy.median(found["stretch_us"])) / found["steps"]}
         yield row
@@ -122,22 +108,15 @@ def apart(rows, column="step_us"):
     return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
-@dataclass(frozen=True)
-class Ratio:
-    value: float
-    low: float
-    high: float
-    chance: float = math.nan  # to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
-
-
+# chance: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
+Ratio = namedtuple("Ratio", "value low high chance", defaults=(math.nan,))
 NONE = Ratio(math.nan, math.nan, math.nan)
 NO_VARIANCE = (0.0, 1)
 
 
 class Paired:
-    """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it;
-    `ratio` and `rank` take the rows themselves as well. `beyond`: a variance of the logarithm of a ratio that more processes do not
-    lessen, and its degrees of freedom."""
+    """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it; `ratio` and `rank` take the
+    rows themselves as well. `beyond`: a variance of the logarithm of a ratio that more processes do not lessen, and its degrees of freedom."""
 
     def __init__(self, rows, beyond=NO_VARIANCE):
         self.beyond = beyond
@@ -162,26 +141,19 @@ def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     layout, or process, there is no interval: it reaches from 0 to infinity."""
     rows = paired(rows)
-    return of_logs([numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))], *rows.beyond)
+    logs = [numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))]
+    if not logs:
+        return NONE
+    if len(logs) == 1:
+        return Ratio(math.exp(logs[0]), 0.0, math.inf)
+    middle, half, error, freedom = student(logs, *rows.beyond)
+    chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
 def by_layout(rows, logs):
     """Of `log_ratios` those of each layout's processes."""
-    found = {}
-    for number, value in logs.items():
-        found.setdefault(rows.layouts.get(number, number), []).append(value)
-    return list(found.values())
-
-
-def of_logs(logs, more=0.0, of=1):
-    """The Ratio whose logarithm is the mean of `logs`, independent of each other. `more`, `of`: as `student` takes them."""
-    if not len(logs):
-        return NONE
-    if len(logs) == 1:
-        return Ratio(math.exp(logs[0]), 0.0, math.inf)
-    middle, half, error, freedom = student(logs, more, of)
-    chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
-    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
+    return list(gather((rows.layouts.get(number, number), value) for number, value in logs.items()).values())
 
 
 def student(values, more=0.0, of=1):
@@ -195,24 +167,18 @@ def student(values, more=0.0, of=1):
 
 
 def log_ratios(rows, first, second):
-    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that
-    both environments have."""
+    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that both environments have."""
     logs = paired(rows).logs
     mine, other = (logs.get(name, {}) for name in (first, second))
     direct = {key[1]: _median(mine[key], other[key]) for key in sorted(set(mine) & set(other))}
     if direct or not (mine and other):
         return direct
     environments = [next(iter(one))[0] for one in (mine, other)]
-    common = _common(logs, environments)
-    if common is None:
-        return {}
-    anchors = [logs[name] for name in common]
-    found = {}
-    for number in sorted({key[1] for key in mine} & {key[1] for key in other}):
-        keys = [(environment, number) for environment in environments]
-        if keys[0] in anchors[0] and keys[1] in anchors[1]:
-            found[number] = _median(mine[keys[0]], anchors[0][keys[0]]) - _median(other[keys[1]], anchors[1][keys[1]])
-    return found
+    there = [{name.partition("+")[0]: found for name, found in logs.items() if any(key[0] == one for key in found)} for one in environments]
+    anchor = min(there[0].keys() & there[1].keys(), default=None)
+    first, second = ({key[1]: _median(samples, known[anchor][key]) for key, samples in one.items() if key in known.get(anchor, ())}
+                     for one, known in zip((mine, other), there))
+    return {number: first[number] - second[number] for number in sorted(first.keys() & second.keys())}
 
 
 def _median(first, second):
@@ -222,53 +188,19 @@ def _median(first, second):
     return float(ordered[(count - 1) // 2] + ordered[count // 2]) / 2
 
 
-def _common(logs, environments):
-    """Names, one in each environment, of a variant that both have."""
-    names = [{name.partition("+")[0]: name for name, found in logs.items() if any(key[0] == one for key in found)}
-             for one in environments]
-    shared = sorted(set(names[0]) & set(names[1]))
-    return [one[shared[0]] for one in names] if shared else None
-
-
-@dataclass(frozen=True)
-class Ranking:
+class Ranking(namedtuple("Ranking", "winner ratios")):
     """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first."""
-    winner: str
-    ratios: dict
-
-    @property
-    def second(self):
-        return next((name for name in self.ratios if name != self.winner), None)
-
-    @property
-    def margin(self):
-        return self.ratios.get(self.second, NONE)
-
-    @property
-    def decided(self):
-        """Whether the winner is shown to be faster than each other one."""
-        return all(one.low > 1 for name, one in self.ratios.items() if name != self.winner)
-
-    @property
-    def chance(self):
-        """To find the winner so far ahead where one of the others is as fast; NaN if there is no other."""
-        return max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan)
-
-    @property
-    def equivalent(self):
-        """The winner and all that are shown to take at most EQUIVALENT times its time."""
-        return tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT)
-
-    @property
-    def open(self):
-        """Those of whom neither is shown: not that they are slower, not that they are as fast."""
-        return tuple(name for name, one in self.ratios.items()
-                     if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
-
-    @property
-    def settled(self):
-        """Whether it is said of each whether it is as fast as the winner."""
-        return not self.open
+    second = property(lambda self: next((name for name in self.ratios if name != self.winner), None))
+    margin = property(lambda self: self.ratios.get(self.second, NONE))
+    # Whether the winner is shown to be faster than each other one.
+    decided = property(lambda self: all(one.low > 1 for name, one in self.ratios.items() if name != self.winner))
+    # To find the winner so far ahead where one of the others is as fast; NaN if there is no other.
+    chance = property(lambda self: max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan))
+    # The winner and all that are shown to take at most EQUIVALENT times its time.
+    equivalent = property(lambda self: tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT))
+    # Those of whom neither is shown: not that they are slower, not that they are as fast.
+    open = property(lambda self: tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT))
+    settled = property(lambda self: not self.open)  # whether it is said of each whether it is as fast as the winner
 
 
 def by_time(winner, ratios):
@@ -289,11 +221,9 @@ def rank(rows, names=None):
     while True:  # they may share other processes with the winner than with the first
         ratios = {name: Ratio(1.0, 1.0, 1.0) if name == winner else ratio(rows, name, winner) for name in order}
         # Who shares no process with the winner is compared through the first, and nothing is claimed of it.
-        ratios = {name: Ratio(to_first[name] / to_first[winner], 0.0, math.inf) if math.isnan(one.value) else one
-                  for name, one in ratios.items()}
+        ratios = {name: Ratio(to_first[name] / to_first[winner], 0.0, math.inf) if math.isnan(one.value) else one for name, one in ratios.items()}
         tried.add(winner)
-        faster = min((name for name in order if name not in tried and ratios[name].value < 1),
-                     key=lambda name: ratios[name].value, default=None)
+        faster = min((name for name in order if name not in tried and ratios[name].value < 1), key=lambda name: ratios[name].value, default=None)
         if faster is None:
             return Ranking(winner, by_time(winner, ratios))
         winner = faster
@@ -305,10 +235,8 @@ def differing(rows):
     totals = {}
     for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
         totals.setdefault(row.implementation, set()).add(row.passes)
-    votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
-    ranked = votes.most_common(2)
-    tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])
-    right = None if tie or not ranked else ranked[0][0]
+    ranked = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name).most_common(2)
+    right = None if not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1] else ranked[0][0]
     return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else
             f"{_text(values)} passes over the stretch, and no number is that of most"
             for name, values in totals.items() if values != {right}}

@@ -14,8 +14,7 @@ from analysis.core.registry import Registry
 def facts_of(folder):
     """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
     found = read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
-    unknown = [part for part in found["parts"] if part not in [*parts()]]
-    if unknown:
+    if unknown := [part for part in found["parts"] if part not in [*parts()]]:
         raise StudyError(f"{folder / 'set.json'} is damaged (parts: {unknown[0]!r} is none of {', '.join(parts())})")
     return found
 
@@ -25,17 +24,9 @@ class Folder:
     """A set's, with what the set says of itself."""
     folder: Path
 
-    @cached_property
-    def facts(self):
-        return facts_of(self.folder)
-
-    @property
-    def context(self):
-        return self.facts["context"]
-
-    @cached_property
-    def registry(self):
-        return Registry(read_object(self.folder / "registry.json", implementations=list))
+    facts = cached_property(lambda self: facts_of(self.folder))
+    context = property(lambda self: self.facts["context"])
+    registry = cached_property(lambda self: Registry(read_object(self.folder / "registry.json", implementations=list)))
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,7 @@
 # What the explorer knows of a set: the samples of every contest, so that a page can rank anew whoever is left; points of error
 # and time; the rule that predicts.
-import dataclasses
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy
 import pandas
@@ -22,101 +20,65 @@ from analysis.map.timed import AFTER
 DIGITS = 7  # of samples
 
 
-@dataclass(frozen=True)
-class Contest:
-    """A scene and form of the step that contenders were timed on. `rows`: those of timing.processes that count; `able`: who
+class Contest(namedtuple("Contest", "part scene form n fill rows able lost failed look rank beyond", defaults=(timing.NO_VARIANCE,))):
+    """A scene and form of the step that contenders were timed on. `fill`: in %; `rows`: those of timing.processes that count; `able`: who
     may be ranked; `lost`: {name: (status, reason)} of the others; `failed`: those of them of whom nothing is known; `look`:
     {name: µs a step} of a first look; `rank`: names → timing.Ranking, as the part itself does it; `beyond`: of timing.Paired."""
-    part: str
-    scene: str
-    form: str
-    n: float
-    fill: float  # %
-    rows: pandas.DataFrame
-    able: list
-    lost: dict
-    failed: list
-    look: dict
-    rank: Callable
-    beyond: tuple = timing.NO_VARIANCE
-
-    @property
-    def family(self):
-        return family_of(self.scene)
+    family = property(lambda self: family_of(self.scene))
 
 
 def of_families(folder):
-    """Contests on mechanisms, in both forms."""
     about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
     about = about[about.n.notna() & about.fill.notna()].set_index("scene")
     table = table[table.scene.isin(about.index) & ~table.implementation.isin(Folder(folder).registry.examples)]
-    by_role, found = grouped(records.read_part(folder, "families")), []
+    by_role = grouped(records.read_part(folder, "families"))
     for form in SCHEMES:
         timed = dict(by_scene(by_role.get(form, [])))
         for scene, cells in table[(table.scheme == form) & table.scene.isin(timed)].groupby("scene", sort=False):
             rows = timed[scene][timed[scene].status == "ok"]
             good = (cells.status == "ok") & (cells.verdict == "agrees")
-            able = list(cells.implementation[good])
-            if able:
-                found.append(Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
-                                     {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
-                                     cells.set_index("implementation").look_us.dropna().to_dict(),
-                                     lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names])))
-    return found
+            if able := list(cells.implementation[good]):
+                yield Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
+                              {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
+                              cells.set_index("implementation").look_us.dropna().to_dict(),
+                              lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names]))
 
 
 def of_map(folder):
-    """Contests on the four-bar over size and artificial fill, in the penalty form."""
     results = Results({"tidy": schema.read_table(folder, "map", "tidy")}, View(folder, "map"))
-    names, found = results.layer("all"), []
+    names = results.layer("all")
     for scene in results.samples()[results.samples().fill_percent.notna()].scene.unique():
         rows = results.rows(scene)
         good = rows[rows.status == "ok"]
         lost = rows[~rows.status.isin(["ok", "dropped"])].drop_duplicates("implementation").set_index("implementation")
-        able = [name for name in names if name in set(good.implementation) and name not in lost.index]
-        if able:
-            found.append(Contest("map", scene, SCHEMES[0], rows.variables.iloc[0], rows.fill_percent.iloc[0], good, able,
-                                 {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
-                                 [name for name in names if name in lost.index and lost.status[name] in FAILURES],
-                                 rows.groupby("implementation").pilot_us.first().dropna().to_dict(),
-                                 lambda names, scene=scene: results.rank(scene, names), results.beyond(scene)))
-    return found
+        if able := [name for name in names if name in set(good.implementation) and name not in lost.index]:
+            yield Contest("map", scene, SCHEMES[0], rows.variables.iloc[0], rows.fill_percent.iloc[0], good, able,
+                          {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
+                          [name for name in names if name in lost.index and lost.status[name] in FAILURES],
+                          rows.groupby("implementation").pilot_us.first().dropna().to_dict(),
+                          lambda names, scene=scene: results.rank(scene, names), results.beyond(scene))
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A scene whose runs were judged: its points that have an error and a time, and their rounds."""
-    subject: str
-    scene: str
-    title: str
-    unit: str
-    n: float
-    fill: float  # %
-    points: pandas.DataFrame
-    rounds: pandas.DataFrame
+Curve = namedtuple("Curve", "subject scene title unit n fill points rounds")  # a scene whose runs were judged: its points with error and time
 
 
 def of_accuracy(folder):
     view = View(folder, "accuracy")
     tables = {name: schema.read_table(folder, "accuracy", name) for name in ("points", "references")}
     about = tables["references"].drop_duplicates("subject").set_index("subject")
-    kinds, found = columns(view.settings), []
+    kinds = columns(view.settings)
     timed = accuracy.timed([one for one in records.read_part(folder, "accuracy") if kinds.get(one.column, ("pairs",))[0] != "pairs"])
     for (subject, scene), rows in tables["points"].groupby(["subject", "scene"], sort=False):
-        known = about.loc[subject]
-        mine = meeting(rows, numpy.inf)
+        known, mine = about.loc[subject], meeting(rows, numpy.inf)
         if len(mine):
-            found.append(Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
-                               accuracy.rounds(rows, timed)))
-    return found
-
-
-PARTS = {"families": of_families, "map": of_map, "accuracy": of_accuracy}
+            yield Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
+                        accuracy.rounds(rows, timed))
 
 
 def read(folder):
     """{part: its contests or curves}; [] of a part without tables."""
-    return {part: find(folder) if (folder / part / schema.DIGESTS).exists() else [] for part, find in PARTS.items()}
+    return {part: [*find(folder)] if (folder / part / schema.DIGESTS).exists() else []
+            for part, find in (("families", of_families), ("map", of_map), ("accuracy", of_accuracy))}
 
 
 def as_json(folder, found, number):
@@ -131,7 +93,6 @@ def as_json(folder, found, number):
 
 
 def _mechanisms(folder):
-    """{scene: its family and numbers}"""
     numbers = [name for name, (kind, _, _) in schema.of_part("families")["mechanisms"].items() if kind == "number"]
     rows = schema.read_table(folder, "families", "mechanisms").to_dict("records")
     return {row["scene"]: {"family": row["family"]} | {name: row[name] for name in numbers if pandas.notna(row[name])} for row in rows}
@@ -163,7 +124,9 @@ def _curve(one, number):
     labels = {accuracy.label(point): place for place, point in enumerate(points.to_dict("records"))}
     rows = [[labels[row.implementation], int(row.process), row.status, None if pandas.isna(row.seconds) else _short(row.seconds)]
             for row in one.rounds.itertuples() if row.implementation in labels]
-    return {key: value for key, value in dataclasses.asdict(one).items() if key not in ("points", "rounds")} | {
+    known = one._asdict()
+    del known["points"], known["rounds"]
+    return known | {
         "family": family_of(one.scene), "rounds": rows,
         "points": [[number[row[0]], *(None if isinstance(value, float) and numpy.isnan(value) else value for value in row[1:])]
                    for row in points.itertuples(index=False)]}
@@ -177,8 +140,7 @@ def size_of(contests):
     """{kind of a scene: (a, b)}: n = a N + b for scenes KIND:N, where all that were timed agree on it."""
     sizes = {}
     for one in contests:
-        known = re.fullmatch(r"([\w-]+):(\d+)((?:,dimension=\d)?)", one.scene)
-        if known:
+        if known := re.fullmatch(r"([\w-]+):(\d+)((?:,dimension=\d)?)", one.scene):
             sizes.setdefault((known[1], known[3]), {})[int(known[2])] = one.n
     lines = {kind: numpy.polyfit(list(found), list(found.values()), 1) for kind, found in sizes.items() if len(found) > 1}
     return [[*kind, round(a, 6), round(b, 6) + 0.0] for kind, (a, b) in lines.items()

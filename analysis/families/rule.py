@@ -1,13 +1,11 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), the least one's is taken. σ is
-# the root mean square of the logarithms of measured over predicted times in the fit: who scatters more must be ahead by more. This caution
-# was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution, changes no choice there.
-# That a dense and a sparse one are always compared was chosen so, too: without the families that fill most, no dense one is worth it.
-# Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
-# what was fitted on all others, its candidates too. A loss is of times taken in turns, else of the first look, else of the look at the next
-# smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known:
-# such scenes are counted, in no mean, and say nothing of who is worth comparing.
+# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), σ their scatter in the fit, the
+# least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal
+# distribution, changes no choice there. That a dense and a sparse one are always compared was chosen so, too: without the families that fill
+# most, no dense one is worth it. A loss is of times taken in turns, else of the first look, else of the look at the next smaller machine of the
+# shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known: such scenes are counted, in
+# no mean, and say nothing of who is worth comparing.
 from collections import Counter
 from itertools import combinations
 
@@ -38,9 +36,10 @@ def judged(tables, registry):
     if len(set(data.family.values())) < FAMILIES:
         return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
-    ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
-    return {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
-            "by_hand": by_hand.table(data, WORTH, UNKNOWN)}
+    ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
+                              columns=["family", "scheme", "implementation", "ratio"])
+    rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
+    return {name: pandas.DataFrame(found) for name, found in rows.items()} | {"by_hand": by_hand.table(data, WORTH, UNKNOWN)}
 
 
 def summary(held):
@@ -79,13 +78,10 @@ def document(tables):
 
 def _ratios(data, family, rest):
     """Measured over predicted times of a family left out, with all that have a model."""
-    rows = []
     for (scheme, name), found in rest.models.items():
         times = data.us[scheme][name].dropna()
         times = times[[scene for scene in times.index if data.family[scene] == family and data.usual[scheme][scene]]]
-        rows += [{"family": family, "scheme": scheme, "implementation": name, "ratio": ratio}
-                 for ratio in times / predicted(found, data.features.loc[times.index])]
-    return pandas.DataFrame(rows, columns=["family", "scheme", "implementation", "ratio"])
+        yield from ((family, scheme, name, ratio) for ratio in times / predicted(found, data.features.loc[times.index]))
 
 
 def _range(ratios, scheme, name, without=None):
@@ -97,35 +93,28 @@ def _range(ratios, scheme, name, without=None):
 
 
 def _steps(data, rule, ratios, registry):
-    rows = []
     for (scheme, name), found in rule.models.items():
         low, high = _range(ratios, scheme, name)
-        rows += [{"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
-                  "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name], "low": low, "high": high,
-                  "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items()]
-    return pandas.DataFrame(rows)
+        yield from ({"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
+                     "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name],
+                     "low": low, "high": high, "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items())
 
 
 def _held(data, rests, ratios):
     """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
-    rows = []
     for family, rest in rests.items():
         for scheme, losses in data.losses.items():
             for scene in [one for one in losses.index if data.family[one] == family]:
                 name, us = rest.choice(scheme, data.features.loc[[scene]])
                 low, high = _range(ratios, scheme, name, family)
                 measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
-                rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
-                             "fastest": losses.loc[scene].idxmin(),
-                             "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name], "step_us": measured,
-                             "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]})
-    return pandas.DataFrame(rows)
+                yield {"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
+                       "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name],
+                       "step_us": measured, "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]}
 
 
 def _alone(data):
-    """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another. [Which
-    number decides?]"""
-    rows = []
+    """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another."""
     for feature in ALONE:
         losses = []
         for family in dict.fromkeys(data.family.values()):
@@ -137,8 +126,8 @@ def _alone(data):
                     _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(),
                                                            costs.to_numpy() * rest.weights(costs.index)[:, None])
                     losses += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
-        rows.append({"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records})
-    return pandas.DataFrame(rows)
+        yield {"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses),
+               "record": data.records}
 
 
 class _Rule:
@@ -207,9 +196,7 @@ class _Data:
             self.losses[scheme], self.known_by[scheme] = _losses(best.div(best.min(axis=1), axis=0).sub(1.0), status, shapes)
         self.family = {scene: known.family[scene] for losses in self.losses.values() for scene in losses.index}
 
-    @property
-    def records(self):
-        return " ".join(self.record[scene] for scene in self.family)
+    records = property(lambda self: " ".join(self.record[scene] for scene in self.family))
 
     def without(self, family):
         rest = object.__new__(_Data)
@@ -257,7 +244,6 @@ def _times(rows, libraries):
     if not known:
         return pandas.Series(dtype=float)
     first = timed.loc[known, "to_rival"].astype(float).idxmin()
-    looks = rows.look_us * (timed.step_us[first] / rows.look_us[first])
-    found = looks.where(rows.status.isin(["ok", "slower"]))
+    found = (rows.look_us * (timed.step_us[first] / rows.look_us[first])).where(rows.status.isin(["ok", "slower"]))
     found.update(timed.step_us[first] * timed.to_rival.astype(float))
     return found.astype(float)

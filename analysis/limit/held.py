@@ -4,7 +4,7 @@
 # says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value. Where not all cases were measured nothing is held as a whole.
 import numpy
 
-from analysis.core.statistics import power_law_interval
+from analysis.core.statistics import power_law
 
 AHEAD_SIZES, NEAR_SIZES = (22, 50, 82, 160, 1000, 4000), (22, 82, 1000)  # n
 AHEAD, AHEAD_PLANAR, AHEAD_SPATIAL = 3.0, 2.0, 1.5
@@ -84,7 +84,7 @@ def _growth(steps, form):
         row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
                "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
         if whole and rows[column].notna().all():
-            exponent, low, high = power_law_interval(rows.variables, rows[column])
+            exponent, low, high = power_law(rows.variables, rows[column])
             row |= {"worst": exponent, "low": low, "high": high,
                     "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
                     "variant": rows.implementation.iloc[-1], "record": " ".join(rows.record),

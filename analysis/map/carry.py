@@ -6,7 +6,6 @@ import pandas
 from scipy import special
 
 from analysis.core import timing
-from analysis.core.timing import CONFIDENCE, TWIN
 from analysis.map.timed import AFTER
 
 SOURCES = {"round": "turns of one process", "process": "processes of one layout", "layout": "layouts of the program",
@@ -37,16 +36,14 @@ def within(paired, first, second):
         return math.nan, math.nan
     error = math.sqrt(variance * sum(1 / len(one) for one in groups)) / len(groups)
     middle = float(numpy.mean([numpy.mean(one) for one in groups]))
-    half = float(special.stdtrit(freedom, (1 + CONFIDENCE) / 2)) * error
+    half = float(special.stdtrit(freedom, (1 + timing.CONFIDENCE) / 2)) * error
     return math.exp(middle - half), math.exp(middle + half)
 
 
 def _of_scenes(timed):
-    """The variances of each scene's leaders."""
     for _, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
         paired = timing.Paired(group)
-        pair = _leaders(paired)
-        if pair:
+        if pair := _leaders(paired):
             variances = nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair))
             names = " ".join(group[group.implementation == pair[0]].record)
             yield from ({"source": source, "variance": variance, "record": names} for source, variance in variances.items())
@@ -92,7 +89,7 @@ def nested(groups, rounds):
 
 def _leaders(paired):
     """The two that are fastest, without twins; None if there are not two."""
-    ranking = timing.rank(paired, {name for name in paired.logs if not name.endswith(TWIN)})
+    ranking = timing.rank(paired, {name for name in paired.logs if not name.endswith(timing.TWIN)})
     return (ranking.winner, ranking.second) if ranking and ranking.second else None
 
 

@@ -1,36 +1,21 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 
 import pandas
 
-from analysis.core.timing import Ranking
+from analysis.map import carry
 from analysis.map.timed import layers
 
 
-@dataclass(frozen=True)
-class Cell:
-    """One scene as a map shows it. `ranking` is None if nobody could be timed there."""
-    scene: str
-    variables: float
-    fill_asked: float | None  # share; None: the mechanism's own fill
-    fill_percent: float       # as measured
-    ranking: Ranking | None
-    excluded: tuple
-    failed: tuple
+class Cell(namedtuple("Cell", "scene variables fill_asked fill_percent ranking excluded failed")):
+    """One scene as a map shows it. `fill_asked`: share; None: the mechanism's own fill; `fill_percent`: as measured; `ranking`: a
+    timing.Ranking; None if nobody could be timed there."""
 
-    @property
-    def decided(self):
-        """Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten."""
-        return bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed))
-
-    @property
-    def settled(self):
-        return bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed))
-
-    @property
-    def outcome(self):
-        return "decided" if self.decided else "equivalent" if self.settled else "open"
+    # Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten.
+    decided = property(lambda self: bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed)))
+    settled = property(lambda self: bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed)))
+    outcome = property(lambda self: "decided" if self.decided else "equivalent" if self.settled else "open")
 
     @property
     def winners(self):
@@ -45,8 +30,7 @@ def map_cells(results, names):
     rows = results.timing[(results.timing.scene != "") & results.timing.fill_percent.notna()]
     scenes = rows[["scene", "variables", "fill_asked", "fill_percent"]].drop_duplicates("scene")
     return [Cell(one.scene, one.variables, None if pandas.isna(one.fill_asked) else one.fill_asked, one.fill_percent,
-                 results.rank(one.scene, names), tuple(results.excluded(one.scene, names)),
-                 tuple(results.failed(one.scene, names)))
+                 results.rank(one.scene, names), *results.lost(one.scene, names))
             for one in scenes.sort_values(["variables", "fill_percent"], kind="stable").itertuples()]
 
 
@@ -75,7 +59,8 @@ def _row(results, cell, layer):
     if ranking is None:
         return row | {"record": next(iter(rows.record), "")}
     mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
-    within = results.within(cell.scene, ranking.second, ranking.winner) if ranking.second else ()
+    both = ranking.second, ranking.winner
+    within = carry.within(results.paired(cell.scene).of(*both), *both) if ranking.second else ()
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": ranking.margin.value, "low": ranking.margin.low,
                   "high": ranking.margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)} | dict(zip(("within_low", "within_high"), within))

@@ -1,8 +1,8 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
+from analysis.core.gather import gather
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.ledger import (CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, of, row, summed,
-                                 unmeasured)
+from analysis.map.ledger import CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, Rule, by_place, judged, row, summed, unmeasured
 
 F5_SIZE = 100        # variables; the nearest size counts that has enough filled scenes
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
@@ -21,7 +21,7 @@ def standing(results):
 
 def over_fill(results):
     """F5. Rule: best dense, on any pair, ÷ system above 1 at every fill."""
-    samples, dense, rows = results.samples(), paper.dense(results), []
+    samples, dense = results.samples(), paper.dense(results)
     samples = samples[samples.implementation.isin(standing(results))]
     filled = samples[samples.fill_asked.notna()].groupby("variables").scene.nunique()
     size = min(filled.index[filled >= FILLS_NEEDED], key=lambda size: abs(size - F5_SIZE), default=None)
@@ -31,15 +31,14 @@ def over_fill(results):
         head = "F5", f"at 100 variables {system} is faster than the best dense version at every fill", "> 1×"
         found = [results.best(scene, dense, names) for scene in scenes.index]
         lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
-        cases = [(f"{one.fill:.0f} %", of(one), one.record) for one in found if one]
+        cases = [(f"{one.fill:.0f} %", one[:3], one.record) for one in found if one]
         if size is None:
-            rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
+            yield unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", Rule(low=1))
         elif lost or not cases:
             text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
-            rows.append(unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1)))
+            yield unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", Rule(low=1))
         else:
-            rows.append(judged(head, cases, at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}"))
-    return rows
+            yield judged(head, cases, Rule(low=1), f"n = {size:g}, best dense ÷ {', '.join(names)}")
 
 
 def regions(results):
@@ -73,10 +72,8 @@ def _region(results, figure, claim, cells, system):
         return row(head, UNMEASURED, f"{len(cells)} cells of this region were timed, {CELLS_NEEDED[figure]} are needed.", rule)
     if not names:
         return row(head, UNMEASURED, "No stand-in of this system was timed.", rule)
-    told, winners = {}, {}
-    for cell in cells:
-        told.setdefault(_cell(cell, names, system and paper.shared(results, system)), []).append(_place(cell))
-        winners.setdefault(cell.ranking.winner if cell.decided else "undecided", []).append(_place(cell))
+    told = gather((_cell(cell, names, system and paper.shared(results, system)), _place(cell)) for cell in cells)
+    winners = gather((cell.ranking.winner if cell.decided else "undecided", _place(cell)) for cell in cells)
     listed = "; ".join(f"{name}: {', '.join(found)}" for name, found in winners.items())
     return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
                f"Winners among the paper's systems: {listed}.") | {

@@ -2,12 +2,12 @@
 # solvers of libraries over problem size, as ratios to the one of least time at each size, with intervals.
 import re
 from collections import Counter
-from itertools import groupby
 
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.patches import Patch, Rectangle
 
+from analysis.core.gather import gather
 from analysis.core.style import GREY, Look, legend, missing, number_axis
 from analysis.core.text import bounded
 from analysis.core.timing import EQUIVALENT
@@ -34,18 +34,18 @@ def draw(tables, view):
 def fastest(results, look, title, names, letters=13, line=2.1):
     """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high."""
     cells = map_cells(results, names)
-    count = len(columns(cells))
-    figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
+    sizes = gather((cell.variables, cell) for cell in cells)
+    figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * len(sizes)), 7.4))
     axes.set_title(title)
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
-    for place, mine in enumerate(columns(cells).values()):
+    for place, mine in enumerate(sizes.values()):
         _column(axes, place - 0.5, mine, look, (letters, line))
     axes.axhline(0, color="#444444", linewidth=0.8)
-    axes.set(xlim=(-0.5, count - 0.5), ylim=(BAND[0], 100))
+    axes.set(xlim=(-0.5, len(sizes) - 0.5), ylim=(BAND[0], 100))
     axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
-    axes.set_xticks(range(count), [f"{one:g}" for one in columns(cells)])
+    axes.set_xticks(range(len(sizes)), [f"{one:g}" for one in sizes])
     axes.tick_params(axis="x", length=0, labelsize=9.0)
     axes.tick_params(axis="y", labelsize=9.0)
     axes.spines["bottom"].set_visible(False)
@@ -53,11 +53,6 @@ def fastest(results, look, title, names, letters=13, line=2.1):
     axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
     _legend(axes, cells, look, names)
     return figure
-
-
-def columns(cells):
-    """{size: its cells by ascending fill}."""
-    return {size: list(mine) for size, mine in groupby(cells, key=lambda cell: cell.variables)}
 
 
 def bounds(fills, own):
@@ -172,13 +167,12 @@ def sparse(results, look):
             axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
                         color=look.colour(name), linewidth=2.2, alpha=0.6)
         axes.axhline(1, color="#444444", linewidth=0.8)
-        axes.set(xlim=(-0.5, len(sizes) - 0.5))
+        axes.set(xlim=(-0.5, len(sizes) - 0.5), ylabel="time ÷ the least at that size")
         axes.grid(True, axis="y", which="major")
         for place in numpy.arange(0.5, len(sizes) - 1):
             axes.axvline(place, color="#e4e4e4", linewidth=0.8, zorder=0)
         if beyond:
             axes.axvspan(beyond[0] - 0.5, len(sizes) - 0.5, color="#f3f3f3", zorder=-1)
-        axes.set_ylabel("time ÷ the least at that size")
     panels[0].set(ylim=(0.96, LEADERS))
     panels[1].set_xlabel("variables n, own fill")
     number_axis(panels[1].yaxis, "×")

@@ -1,7 +1,8 @@
 # A row of the claims ledger: the paper's figure, ours with its interval, and the verdict by a rule.
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 
+from analysis.core.gather import gather
 from analysis.core.text import bounded, number, rough
 
 CONFIRMED, EXCEEDED, REFUTED, UNDECIDED = "confirmed", "exceeded", "refuted", "undecided"
@@ -10,12 +11,8 @@ VERDICTS = (CONFIRMED, EXCEEDED, REFUTED, MIXED, UNDECIDED, INCOMPARABLE, UNMEAS
 FACTOR_BAND = 1.25  # around a factor of the paper: from it divided by this to it times this confirms
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(namedtuple("Rule", "low high beyond", defaults=(-math.inf, math.inf, REFUTED))):
     """What confirms lies between `low` and `high`; `beyond`: the verdict on what lies above."""
-    low: float = -math.inf
-    high: float = math.inf
-    beyond: str = REFUTED
 
     def text(self, unit):
         if math.isinf(self.high):
@@ -23,14 +20,6 @@ class Rule:
         if math.isinf(self.low):
             return f"at most {number(self.high)}{unit}"
         return f"{number(self.low)} to {number(self.high)}{unit}" + (", above it exceeded" if self.beyond == EXCEEDED else "")
-
-
-def at_least(bound):
-    return Rule(low=bound)
-
-
-def at_most(bound):
-    return Rule(high=bound)
 
 
 def factor(low, high=None):
@@ -55,9 +44,7 @@ def summed(verdicts):
 def judged(head, cases, rule, where, unit="×"):
     """A row from what was measured at one or several sizes or fills, each judged alone. `head`: (id, claim, the paper's
     number); `cases`: [(place, (value, low, high) in `unit`, record)]; `where`: who was compared."""
-    told = {}
-    for place, (_, low, high), _ in cases:
-        told.setdefault(verdict(low, high, rule), []).append(place)
+    told = gather((verdict(low, high, rule), place) for place, (_, low, high), _ in cases)
     known = [bounded(low, high) for _, (_, low, high), _ in cases]
     values = sorted((value, (number if one else rough)(value)) for (_, (value, _, _), _), one in zip(cases, known))
     ends = ["", ""] if not all(known) else [number(min(low for _, (_, low, _), _ in cases)), number(max(high for _, (_, _, high), _ in cases))]
@@ -91,7 +78,7 @@ def compared(head, found, rule, lacking=""):
     """A row of results.Versus of several sizes; without any it says what is `lacking`."""
     if not found:
         return unmeasured(head, lacking, rule)
-    return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,
+    return judged(head, [(f"n = {one.size:g}", one[:3], one.record) for one in found], rule,
                   ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)))
 
 
@@ -117,12 +104,5 @@ def by_id(table):
 
 def told(table):
     """"confirmed: F4, C4; mixed: T2": one verdict a claim."""
-    found = {}
-    for name, (one, _) in by_id(table).items():
-        found.setdefault(one, []).append(name)
+    found = gather((one, name) for name, (one, _) in by_id(table).items())
     return "; ".join(f"{one}: {', '.join(found[one])}" for one in VERDICTS if one in found)
-
-
-def of(ratio):
-    """(value, low, high)"""
-    return ratio.value, ratio.low, ratio.high

@@ -20,32 +20,28 @@ def context(tables, view):
             "own": [name for name in results.layer("all") if name not in libraries],
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
-            "times": step_times(results), "overhead": overhead, "centred": LAST_CENTRED, "title": paper.TITLE,
+            "times": [*step_times(results)], "overhead": overhead, "centred": LAST_CENTRED, "title": paper.TITLE,
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results),
             "pairs": [pair | {"used": sorted(ranked.implementation[ranked.blas == pair["name"]].unique())}
                       for pair in view.registry.listed.get("blas", [])],
             "verdicts": verdicts(tables["verification"], results.implementations), "losses": losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
-            "coverage": view.registry.coverage,
-            "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
-                row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
-            "processes": timed.record.nunique()}
+            "coverage": view.registry.coverage, "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"),
+            "spread": [row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")]}
 
 
 def step_times(results):
     """Own fill: a row a size and contender that is ranked, with its spread over processes."""
-    rows = []
     for size, timed in results.samples(natural_only=True).groupby("variables"):
         winners = [results.fastest(results.natural(size), results.layer(layer)) for layer in ("libraries", "all")]
         for name in results.implementations:
             mine = timed[timed.implementation == name]
             if len(mine):
-                rows.append({"variables": size, "implementation": name, "median": mine.step_us.median(), "low": mine.low_us.min(),
-                             "high": mine.high_us.max(), "processes": len(mine), "samples": mine["samples"].map(len).sum(),
-                             "steps": mine.steps.iloc[0], "passes": mine.passes.iloc[0] / mine.steps.iloc[0],
-                             "per_pass": mine.step_us.median() * mine.steps.iloc[0] / mine.passes.iloc[0],
-                             "setup": mine.setup_us.median(), "winner": name in winners})
-    return rows
+                steps, passes = mine.steps.iloc[0], mine.passes.iloc[0]
+                yield {"variables": size, "implementation": name, "median": mine.step_us.median(), "low": mine.low_us.min(),
+                       "high": mine.high_us.max(), "processes": len(mine), "samples": mine["samples"].map(len).sum(), "steps": steps,
+                       "passes": passes / steps, "per_pass": mine.step_us.median() * steps / passes, "setup": mine.setup_us.median(),
+                       "winner": name in winners}
 
 
 def verdicts(table, names):

@@ -10,10 +10,8 @@ TABLE1 = {("dense", 22): (48, 4, 44, 4), ("sparse", 82): (15, 13, 51, 21)}
 STARTING = {"dense": "starting_dense/gesv", "sparse": "starting_sparse/mumps"}
 
 # Table 2: ms before and after symbolic preprocessing; neither size nor number of calls is stated.
-TABLE2 = {"rank_k_update": (2528.2, 9.4, 269), "matrix_addition": (140.9, 1.9, 74),
-          "jacobian_evaluation": (11.6, 3.8, 3)}
-OPERATIONS = {"rank_k_update": "rank-k update", "matrix_addition": "matrix addition",
-              "jacobian_evaluation": "Jacobian evaluation"}
+TABLE2 = {"rank_k_update": (2528.2, 9.4, 269), "matrix_addition": (140.9, 1.9, 74), "jacobian_evaluation": (11.6, 3.8, 3)}
+OPERATIONS = {"rank_k_update": "rank-k update", "matrix_addition": "matrix addition", "jacobian_evaluation": "Jacobian evaluation"}
 NOT_OPTIMISED = "ublas_sparse"  # folder
 
 # Who stands for the paper's systems; a folder means all its variants. Whoever is not named here, such as code of our

@@ -1,14 +1,15 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
-from dataclasses import dataclass
-from functools import cache, cached_property
+from collections import namedtuple
+from functools import cache
 
 from analysis.core.registry import NULL, TWIN
 from analysis.core.timing import NO_VARIANCE
 from analysis.map import carry, timed
-from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
+# Time of `slow` over that of `fast`, with its interval, and where it was taken: fill in %.
+Versus = namedtuple("Versus", "value low high slow fast size fill record")
 
 
 def of(tables, view):
@@ -25,45 +26,22 @@ def with_samples(rows):
     return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
 
 
-@dataclass(frozen=True)
-class Versus:
-    """Time of `slow` over that of `fast`, with its interval, and where it was taken."""
-    value: float
-    low: float
-    high: float
-    slow: str
-    fast: str
-    size: float
-    fill: float  # percent
-    record: str
-
-
 class Results:
     def __init__(self, tables, view):
         self.tidy, self.view = tables["tidy"], view
         self.registry, self.variants = view.registry, view.registry.variants
-
-    @cached_property
-    def implementations(self):
-        """Names that take part in rankings, in the registry's order."""
         present = set(self.tidy.implementation)
-        return [name for name in self.variants if name in present]
-
-    @cached_property
-    def timing(self):
-        """Rows of timed processes and of what was not timed."""
-        return with_samples(self.tidy[self.tidy.kind == "timing"])
-
-    @cached_property
-    def _scenes(self):
-        return dict(list(self.timing.groupby("scene")))
+        self.implementations = [name for name in self.variants if name in present]  # that take part in rankings, in the registry's order
+        self.timing = with_samples(self.tidy[self.tidy.kind == "timing"])  # rows of timed processes and of what was not timed
+        self._scenes = dict(list(self.timing.groupby("scene")))
+        self._of_seeds = carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
+        self.sizes = sorted(self.samples(natural_only=True).variables.unique())  # that were timed at their own fill
 
     def rows(self, scene):
-        """All timing rows of a scene, whatever their status."""
         return self._scenes.get(scene, self.timing[:0])
 
     @cache
-    def _paired(self, scene):
+    def paired(self, scene):
         """What statistics need of a scene's rows: wide tables are slow to walk through."""
         return timed.Scene(self.rows(scene), self.beyond(scene))
 
@@ -71,18 +49,9 @@ class Results:
         """What timing.Paired takes: artificial fill is placed elsewhere by another seed."""
         return self._of_seeds if self.rows(scene).fill_asked.notna().any() else NO_VARIANCE
 
-    @cached_property
-    def _of_seeds(self):
-        return carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
-
-    @cached_property
-    def _statuses(self):
-        """{scene: {status: names}}"""
-        return {scene: rows.groupby("status").implementation.agg(set).to_dict() for scene, rows in self._scenes.items()}
-
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
-        return [one for one in layers(self.registry)[name] if one in self.implementations]
+        return [one for one in timed.layers(self.registry)[name] if one in self.implementations]
 
     def samples(self, natural_only=False):
         """Rows of processes that timed ranked contenders."""
@@ -91,13 +60,7 @@ class Results:
         return rows[chosen & rows.fill_asked.isna()] if natural_only else rows[chosen]
 
     def natural(self, size):
-        """Name of a size's scene with its own fill."""
         return f"four-bar:{round(size) // 2 - 1}"
-
-    @cached_property
-    def sizes(self):
-        """Sizes that were timed at their own fill."""
-        return sorted(self.samples(natural_only=True).variables.unique())
 
     @cache
     def alternatives(self, variant):
@@ -106,37 +69,30 @@ class Results:
         return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
                     ~rows.implementation.str.endswith(TWIN)]
 
-    def usual(self, variant):
-        """The pair that a variant is ranked on."""
-        return next(iter(self.tidy.blas[self.tidy.implementation == variant]), "")
-
     def rank(self, scene, names):
         return self._rank(scene, frozenset(names) - {NULL})
 
     @cache
     def _rank(self, scene, names):
-        return self._paired(scene).rank(names)
+        return self.paired(scene).rank(names)
 
     def fastest(self, scene, names):
-        """The one of least time; None if nobody was timed."""
         found = self.rank(scene, names)
         return found.winner if found else None
 
     @cache
     def ratio(self, scene, slow, fast):
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
-        found = self._paired(scene).ratio(slow, fast)
+        found = self.paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
 
     def versus(self, scene, slow, fast):
-        """Versus of two contenders; None if they cannot be compared."""
         found = None if None in (slow, fast) or slow == fast else self.ratio(scene, slow, fast)
         if found is None:
             return None
         rows = self.rows(scene)
         record = next(iter(rows[(rows.implementation == slow) & (rows.status == "ok")].record), "")
-        return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]),
-                      float(rows.fill_percent.iloc[0]), record)
+        return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]), float(rows.fill_percent.iloc[0]), record)
 
     def best(self, scene, slow, fast):
         """Versus of the fastest of the names `slow` and the fastest of the names `fast`."""
@@ -148,18 +104,8 @@ class Results:
         found = [one for one in found if one]
         return found if found and found[-1].size >= reaching else []
 
-    def within(self, scene, slow, fast):
-        """carry.within of their ratio."""
-        return carry.within(self._paired(scene).of(slow, fast), slow, fast)
-
-    def failed(self, scene, names):
-        return self._with(scene, names, FAILURES)
-
-    def excluded(self, scene, names):
-        failed = self.failed(scene, names)
-        return [name for name in self._with(scene, names, ("excluded", "slower")) if name not in failed]
-
-    def _with(self, scene, names, statuses):
-        """Those of `names` that have a row of one of these statuses in a scene."""
-        known = self._statuses.get(scene, {})
-        return [name for name in names if any(name in known.get(status, ()) for status in statuses)]
+    def lost(self, scene, names):
+        """(those of `names` that were too slow in a scene, those that failed)"""
+        rows = self.rows(scene)
+        slow, failed = (set(rows.implementation[rows.status.isin(some)]) for some in (("excluded", "slower"), FAILURES))
+        return tuple(name for name in names if name in slow - failed), tuple(name for name in names if name in failed)

@@ -1,5 +1,6 @@
 # The answer to "Which implementation is fastest at which size and fill?", from the tables.
 from analysis.core.controls import judged
+from analysis.core.gather import gather
 from analysis.map import summary
 from analysis.map.ledger import told
 from analysis.map.results import of
@@ -15,8 +16,7 @@ def answers(tables, view):
     dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
     if dense:
         found.append({"text": f"As the tangent fills, dense libraries overtake: {', '.join(dense)}.", "anchor": "maps"})
-    whole = [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]
-    if whole:
+    if whole := [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]:
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
@@ -30,9 +30,7 @@ def answers(tables, view):
 
 def by_outcome(groups, what="library"):
     """A sentence for each that is shown to be fastest at some sizes, one for sizes of each other kind."""
-    told = {}
-    for group in groups:
-        told.setdefault((group["kind"], group["names"][0] if group["kind"] == "decided" else ""), []).append(group)
+    told = gather(((group["kind"], group["names"][0] if group["kind"] == "decided" else ""), group) for group in groups)
     for (kind, name), mine in told.items():
         sizes = f"n = {', '.join(summary.span(group) for group in mine)}"
         margins = [value for group in mine for value in group["margins"] if value == value]

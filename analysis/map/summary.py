@@ -9,9 +9,7 @@ def by_size(results, names):
     """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "margins"}];
     kind: "decided" (one name), "equivalent" or "open"; margins: of the second behind the winner."""
     groups = []
-    for cell in map_cells(results, names):
-        if cell.fill_asked is not None or cell.ranking is None:
-            continue
+    for cell in (one for one in map_cells(results, names) if one.fill_asked is None and one.ranking):
         found = {"names": sorted(cell.winners), "kind": cell.outcome}
         if not groups or groups[-1] | found != groups[-1]:
             groups.append(found | {"first": cell.variables, "margins": []})
@@ -26,16 +24,13 @@ def span(group):
 
 
 def dense_from(results):
-    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those
-    at and above which the best dense library is faster than the best sparse one (None: at none), "last_sparse" the last
-    fill with another outcome (None: at none), "between" the first and last fill at which dense is faster if it is not up
-    to the last one (or None)."""
-    rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results, others=True)])
-    for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
-        found = [(cell.fill_percent, results.best(cell.scene, paper.dense(results), paper.sparse(results, others=True)))
-                 for cell in cells if cell.variables == size and cell.ranking]
-        if not found:  # nobody was timed there
-            continue
+    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those at and above which the
+    best dense library is faster than the best sparse one (None: at none), "last_sparse" the last fill with another outcome (None: at none),
+    "between" the first and last fill at which dense is faster if it is not up to the last one (or None)."""
+    rows, dense, sparse = [], paper.dense(results), paper.sparse(results, others=True)
+    cells = map_cells(results, [*dense, *sparse])
+    for size in sorted({one.variables for one in cells if one.fill_asked is not None} & {one.variables for one in cells if one.ranking}):
+        found = [(cell.fill_percent, results.best(cell.scene, dense, sparse)) for cell in cells if cell.variables == size and cell.ranking]
         faster = [bool(ratio and ratio.high < 1) for _, ratio in found]
         start = len(found) - next((place for place, one in enumerate(reversed(faster)) if not one), len(found))
         ahead = [fill for (fill, _), one in zip(found, faster) if one]
@@ -56,8 +51,7 @@ def prices(results, names):
         failed = [cell.scene for cell in cells if name in cell.failed and cell.scene not in ratios]
         rough = {cell.scene: pilots[cell.scene].get(name) / pilots[cell.scene].get(cell.ranking.winner) for cell in cells
                  if cell.scene not in (*ratios, *failed) and pilots[cell.scene].reindex([name, cell.ranking.winner]).notna().all()}
-        known = ratios | rough
-        if known:
+        if known := ratios | rough:
             where = max(known, key=known.get)
             rows.append({"implementation": name, "mean": float(numpy.exp(numpy.mean(numpy.log(list(known.values()))))), "worst": known[where],
                          "where": where, "cells": len(known), "of": len(cells), "rough": len(rough), "failed": len(failed)})
@@ -67,6 +61,6 @@ def prices(results, names):
 def settled(table, layer):
     """{"cells", "decided", "holm", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
     rows = table[(table.layer == layer) & (table.winner != "")]
-    decided, settled = rows.decided.fillna(False).astype(bool), rows.settled.fillna(False).astype(bool)
-    return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(rows.holm.fillna(False).astype(bool).sum()), "equivalent": int((settled & ~decided).sum()),
+    decided, settled, holm = (rows[name].fillna(False).astype(bool) for name in ("decided", "settled", "holm"))
+    return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(holm.sum()), "equivalent": int((settled & ~decided).sum()),
             "open": int((~settled & ~decided).sum())}

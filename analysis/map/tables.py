@@ -8,27 +8,24 @@ from analysis.core.schema import conform, of_part
 from analysis.core.statistics import median
 from analysis.map import carry
 from analysis.map.cells import table as cells
-from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
+from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
+                                 tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
-from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
-from analysis.map.claims_starting import starting_sparse, table1, table2_claims
 from analysis.map.results import Results, with_samples
 from analysis.map.timed import AFTER, timed_rows
 
 # The claims ledger: each claim of the paper with our figure, its interval and a computed verdict; in the order of the rows.
-LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse, tuned_blas, sparse_against_dense,
-          over_fill, regions, compilers)
+LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse, tuned_blas, sparse_against_dense, over_fill, regions, compilers)
 QUESTION = ["constraints", "start", "steps", "step", "passes", "penalty", "tolerance", "fill_seed", "record"]
 
 
 def claims(results):
-    """All rows of the ledger; every claim has at least one."""
     return [row for claim in LEDGER for row in claim(results)]
 
 
 def build(records, view):
-    found = {"tidy": tidy(records), "scenes": scenes(records), "verification": verification(records)}
-    found = {name: conform(frame, of_part("map")[name], f"map/{name}.csv") for name, frame in found.items()}
+    found = {name: conform(make(records), of_part("map")[name], f"map/{name}.csv")
+             for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "spread": carry.components(results.timing, with_samples(seeds)),
@@ -60,12 +57,10 @@ def tidy(records):
 
 
 def _of(records, *roles):
-    """Rows of the processes of these roles."""
     return timing.processes([one for one in records if one.role in roles])
 
 
 def _pairs(rows):
-    """(scene, implementation) of each row."""
     return pandas.Series(list(zip(rows.scene, rows.implementation)), rows.index, dtype=object)
 
 
@@ -79,10 +74,9 @@ def _rejected(records):
     """A row for each verdict of the gate that is not "agrees", and for each gate that ended without one."""
     for one, cell in ((one, one.cell) for one in records if one.role == "gate"):
         for name, (status, reason) in one.verdicts.items():
-            if status == "agrees" or not one.done and len(cell["contenders"]) > 1:
-                continue  # one by one they are checked again
-            yield {"scene": cell["scene"], "implementation": name, "environment": cell["environment"], "status": status,
-                   "reason": reason, "record": one.name}
+            if status != "agrees" and (one.done or len(cell["contenders"]) == 1):  # else one by one they are checked again
+                yield {"scene": cell["scene"], "implementation": name, "environment": cell["environment"], "status": status,
+                       "reason": reason, "record": one.name}
 
 
 def _operations(records):

@@ -1,7 +1,5 @@
-# Which processes of a timed scene count, and who is fastest there.
-#
-# A scene has a few processes of all ("time"), and then more of those who lead ("again"), with more samples. Leaders are
-# compared by the latter alone: they are the better ones, and nobody was chosen by them.
+# Which processes of a timed scene count, and who is fastest there: a few of all ("time"), and then more of those who lead ("again"), with more
+# samples. Leaders are compared by the latter alone: they are the better ones, and nobody was chosen by them.
 from dataclasses import replace
 
 from analysis.core import timing
@@ -30,7 +28,6 @@ class Scene:
         self.all, self.again = timing.Paired(rows, beyond), timing.Paired(rows[rows.process > AFTER], beyond)
 
     def rank(self, names):
-        """timing.Ranking among `names`."""
         found, lead = timing.rank(self.all, names), set(self.again.logs)
         if found is None or found.winner not in lead or len(set(found.ratios) & lead) < 2:
             return found  # who is fastest far ahead of all leads nobody, and has no further processes
@@ -44,7 +41,6 @@ class Scene:
         return self.again if len(both[0] & both[1]) > 1 else self.all
 
     def ratio(self, slow, fast):
-        """timing.Ratio of two contenders."""
         return timing.ratio(self.of(slow, fast), slow, fast)
 
 

@@ -6,13 +6,11 @@ import pytest
 
 from analysis.core.files import ROOT
 from analysis.map import ledger, paper
-from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
+from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
+                                 tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
-from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
-from analysis.map.claims_starting import starting_sparse, table1, table2_claims
 from analysis.map.tables import claims
-from analysis.map.ledger import (CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, at_least, at_most,
-                                 factor, verdict)
+from analysis.map.ledger import CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, factor, verdict
 from analysis.tests.map_tables import cell, failed, operation, phases, results
 
 KLU, FACTOR, SIMPLICIAL = "csc_klu/refactor", "csc_klu/factor", "csc_cholmod/simplicial"
@@ -47,15 +45,15 @@ def outcome(rows, *words):
 
 
 @pytest.mark.parametrize("low, high, rule, expected", [
-    (3, 4, at_least(3), CONFIRMED), (2, 2.9, at_least(3), REFUTED), (2, 4, at_least(3), UNDECIDED),
-    (1, 2, at_most(2), CONFIRMED), (2.1, 3, at_most(2), REFUTED), (40, 60, Rule(30, 50), UNDECIDED),
+    (3, 4, Rule(low=3), CONFIRMED), (2, 2.9, Rule(low=3), REFUTED), (2, 4, Rule(low=3), UNDECIDED),
+    (1, 2, Rule(high=2), CONFIRMED), (2.1, 3, Rule(high=2), REFUTED), (40, 60, Rule(30, 50), UNDECIDED),
     (35, 45, Rule(30, 50), CONFIRMED), (51, 60, Rule(30, 50), REFUTED), (1.7, 3.7, factor(2, 3), CONFIRMED),
     (4.2, 4.6, factor(2, 3), EXCEEDED), (3.7, 4.6, factor(2, 3), UNDECIDED), (1.2, 1.5, factor(2, 3), REFUTED)])
 def test_verdict_needs_the_whole_interval(low, high, rule, expected):
     assert verdict(low, high, rule) == expected
 
 
-def judged(*cases, rule=at_least(3)):
+def judged(*cases, rule=Rule(low=3)):
     return ledger.judged(("X", "", ""), [(f"n = {size}", interval, f"r{size}") for size, interval in cases], rule, "a ÷ b")
 
 
@@ -104,8 +102,8 @@ def test_a_single_process_decides_nothing():
 
 def test_table1_compares_shares_in_points():
     shares = (0.20, 0.25, 0.20, 0.10, 0.05, 0.20)  # evaluation and assembly: 45 %; solving: 30 %
-    rows = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, *[shares] * 6)))
-    few = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, shares, shares)))
+    rows = [*table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, *[shares] * 6)))]
+    few = [*table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, shares, shares)))]
     assert outcome(few, "dense", "residual")[0] == UNMEASURED and "2 processes" in few[0]["reason"]
     assert outcome(rows, "dense", "residual") == (CONFIRMED, "45 %")
     assert outcome(rows, "dense", "factorize") == (REFUTED, "30 %")
@@ -117,7 +115,7 @@ def test_table2_is_judged_at_every_size_for_each_plain_version():
     for size in (10, 250, 1000):
         for name, time in ((KLU, size), (PLAIN, size ** 2), (AXPY, 5 * size)):
             rows += operation(name, size, "rank_k_update", time, time)
-    rows = table2_claims(load(rows))
+    rows = [*table2_claims(load(rows))]
     assert outcome(rows, "rank-k", PLAIN) == (MIXED, "10 to 1000×") and outcome(rows, "rank-k", AXPY) == (REFUTED, "5×")
     assert outcome(rows, "addition")[0] == UNMEASURED
     mixed = next(row for row in rows if PLAIN in row["claim"])
@@ -228,7 +226,7 @@ def test_one_disturbed_size_does_not_decide():
 def test_over_fill_names_the_fill_where_dense_is_faster():
     rows = [row for fill, sparse in ((None, 1), (0.2, 2), (0.5, 3), (1.0, 5))
             for row in steady(SIMPLICIAL, 100, sparse, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
-    found = over_fill(load(rows))
+    found = [*over_fill(load(rows))]
     assert outcome(found, "CHOLMOD") == (MIXED, "0.8 to 4×") and found[0]["reason"] == "confirmed at 5 %, 20 %, 50 %; refuted at 100 %"
     assert outcome(found, "WSMP")[0] == UNMEASURED
 
@@ -236,7 +234,7 @@ def test_over_fill_names_the_fill_where_dense_is_faster():
 def test_a_fill_at_which_a_solver_was_lost_leaves_the_claim_open():
     rows = [row for fill in (0.2, 0.5) for row in steady(SIMPLICIAL, 100, 1, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
     rows += steady(POTRF, 100, 4, fill=1.0) + failed(SIMPLICIAL, 100, "crashed", "SIGSEGV", fill=1.0)
-    row = over_fill(load(rows))[0]
+    row, _ = over_fill(load(rows))
     assert row["verdict"] == UNMEASURED and "fills of 100 %" in row["reason"]
 
 

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from analysis.core.files import ROOT, digest
+from analysis.core.gather import gather
 from analysis.core.registry import NULL, TWIN
 
 LAYOUT = "layouts/mbs-"  # `mbs` with its functions in other places: + seed
@@ -20,18 +21,8 @@ class Contender:
     blas: str = SYSTEM
     build: str = ""  # "" is the study's own
 
-    @property
-    def ranked(self):
-        return "+" not in self.name
-
-    @property
-    def file_name(self):
-        return self.name.replace("/", ".")
-
-    @property
-    def environment(self):
-        """What its processes share with those of others."""
-        return f"{self.build or 'own'}|{self.blas}"
+    ranked = property(lambda self: "+" not in self.name)
+    environment = property(lambda self: f"{self.build or 'own'}|{self.blas}")  # what its processes share with those of others
 
 
 CONTROL = Contender(NULL, NULL)
@@ -44,26 +35,19 @@ def twin_of(one):
 
 
 def on_usual_pairs(registry, pairs, names):
-    """[Contender] of variants by name; `pairs`: {folder or "all": pair}, as a profile has them."""
-    return [Contender(name, name, usable(registry, pairs.get(name.split("/")[0], pairs["all"]))) for name in names]
-
-
-def usable(registry, pair):
-    """The pair, or the system's where it is not installed."""
-    return pair if registry.pairs.get(pair, "unknown") == "" else SYSTEM
+    """[Contender] of variants by name; `pairs`: {folder or "all": pair}, as a profile has them. Where one is not installed: the system's."""
+    usual = [pairs.get(name.split("/")[0], pairs["all"]) for name in names]
+    return [Contender(name, name, pair if registry.pairs.get(pair) == "" else SYSTEM) for name, pair in zip(names, usual)]
 
 
 def control(registry, pairs):
     """CONTROL on the pair of most; `pairs`: as on_usual_pairs has them."""
-    return replace(CONTROL, blas=usable(registry, pairs["all"]))
+    return on_usual_pairs(registry, pairs, [NULL])[0]
 
 
 def by_environment(contenders):
     """{environment: its contenders, which processes may have in common}"""
-    found = {}
-    for one in contenders:
-        found[one.environment] = (*found.get(one.environment, ()), one)
-    return found
+    return {name: tuple(group) for name, group in gather((one.environment, one) for one in contenders).items()}
 
 
 @dataclass(frozen=True)
@@ -88,14 +72,8 @@ class Cell:
         return replace(self, settings=tuple(map(str, self.settings)),
                        inputs=digest(path)[:12] if self.scene.endswith(".json") and path.exists() else "")
 
-    @property
-    def environment(self):
-        return self.contenders[0].environment if self.contenders else "own|system"
-
-    @property
-    def own(self):
-        """Whether its program is `mbs`, in whatever layout."""
-        return self.program == "mbs" or self.program.startswith(LAYOUT)
+    environment = property(lambda self: self.contenders[0].environment if self.contenders else "own|system")
+    own = property(lambda self: self.program == "mbs" or self.program.startswith(LAYOUT))  # whether its program is `mbs`, in whatever layout
 
     @property
     def built(self):
@@ -104,7 +82,6 @@ class Cell:
         return f"{self.program}@{build}" if build else self.program
 
     def document(self):
-        """As it stands in records."""
         found = asdict(self)
         found["contenders"] = [one.name for one in self.contenders]
         return found | {"environment": self.environment}
@@ -112,7 +89,7 @@ class Cell:
     def file_name(self):
         """ROLE/WHO@WHAT-ID.json: readable, and its own for every cell."""
         identity = digest(json.dumps(self.document(), sort_keys=True))[:10]
-        who = self.contenders[0].file_name if len(self.contenders) == 1 else "all" if self.contenders else "harness"
+        who = self.contenders[0].name.replace("/", ".") if len(self.contenders) == 1 else "all" if self.contenders else "harness"
         what = Path(self.scene).name.removesuffix(".json") or self.program
         safe = "".join(c if c.isalnum() or c in "-+=,.:" else "_" for c in what)[:60].replace(":", "-")
         return f"{self.role or self.kind or 'run'}/{who}@{safe}-{identity}.json"

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from dataclasses import dataclass
+from collections import namedtuple
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
@@ -22,37 +22,22 @@ ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", 
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
 
 
-class Signalled(KeyboardInterrupt):
-    """SIGINT, SIGTERM or SIGHUP: the study ends, and says how to resume."""
-
-    def __init__(self, number):
-        super().__init__()
-        self.number = number
-
-
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _signals = []  # received; compiled code of libraries may swallow what their handler raises
 
 
 def end_on_signals():
-    """Lets these signals, unless they are ignored, end the study, at the latest before its next child."""
+    """Lets these signals, unless they are ignored, end the study, at the latest before its next child: by a KeyboardInterrupt with the number."""
     def end(number, _):
         _signals.append(number)
-        raise Signalled(number)
+        raise KeyboardInterrupt(number)
     for number in ENDS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
 
 
-@dataclass(frozen=True)
-class Ended:
-    status: str  # "exited", "crashed", "timeout" or "out-of-memory"
-    reason: str
-    code: int | None
-    stdout: str
-    stderr: str  # its end
-    seconds: float
-    cpu_s: float  # processor time of it and of its children
+# status: "exited", "crashed", "timeout" or "out-of-memory"; code: None if it did not end; stderr: its end; cpu_s: of its children, too
+Ended = namedtuple("Ended", "status reason code stdout stderr seconds cpu_s")
 
 
 def run(command, seconds=None, memory_mb=None, alone=False):
@@ -60,7 +45,7 @@ def run(command, seconds=None, memory_mb=None, alone=False):
     stays on one processor."""
     if _signals:  # a pool's thread would die of the first, with a traceback
         own = threading.current_thread() is threading.main_thread()
-        raise Signalled(_signals[0]) if own else StudyError("interrupted")
+        raise KeyboardInterrupt(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
         on_one = ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []  # the last that this process may use

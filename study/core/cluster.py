@@ -8,9 +8,8 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
-from study.core.front import duration, follow
+from study.core.front import duration, follow, snakemake
 from study.core.node import forget, home, own_sets, refusals
-from study.core.studyset import StudySet
 
 PROFILES = ROOT / "study" / "cluster"
 GRACE = 15  # minutes over a budget: the last cell's limit, at most 600 s, and what a node does first
@@ -20,15 +19,13 @@ ENDING = 120  # s that jobs may take to end
 def profile_folder(name):
     """Of a name in study/cluster, or a path; StudyError if it is no profile."""
     folder = PROFILES / name if (PROFILES / name).is_dir() else Path(name).absolute()
-    missing = [one for one in ("config.yaml", "submit", "status", "cancel") if not (folder / one).is_file()]
-    if missing:
+    if missing := [one for one in ("config.yaml", "submit", "status", "cancel") if not (folder / one).is_file()]:
         known = ", ".join(sorted(path.parent.name for path in PROFILES.glob("*/config.yaml")))
         raise StudyError(f"--cluster: {folder} is no profile ({missing[0]} is missing); known: {known}")
     return folder
 
 
 def dry_run(columns):
-    """Prints the jobs of these columns, and the node-hours of their budgets."""
     jobs = [(part, column, seconds) for part, names in columns.items() for column, seconds in names.items()]
     for part, column, seconds in jobs:
         print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")
@@ -41,10 +38,10 @@ def run(profile, only, chosen, folder, cluster, columns):
         end_jobs(folder, cluster)
         _plan(profile, only, chosen, folder, columns)
         if not (folder / "set.json").exists():
-            _workflow(StudySet(folder), cluster, columns, "set.json")
+            _workflow(sets.StudySet(folder), cluster, columns, "set.json")
         known = sets.opened(folder)  # of a question that is still the same; that the nodes are its own they see themselves
         write_json(folder / "set.json", known.facts | sets.kept_facts(known, profile, only, chosen))
-        studyset = StudySet(folder)
+        studyset = sets.StudySet(folder)
         studyset.clear()
         sets.reopen(studyset, columns)
         sets.need_tables(studyset)
@@ -63,8 +60,7 @@ def _plan(profile, only, chosen, folder, columns):
 
 
 def _workflow(studyset, cluster, columns, target):
-    command = ["/usr/bin/python3", "-m", "snakemake", target, "--snakefile", str(PROFILES / "Snakefile"), "--directory",
-               str(studyset.folder), "--profile", str(cluster), "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
+    command = snakemake(studyset, PROFILES / "Snakefile", target, "--profile", str(cluster))
     stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
 
     def show(display):
@@ -82,8 +78,7 @@ def _workflow(studyset, cluster, columns, target):
 def end_jobs(folder, cluster):
     """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
     path, end = home(folder) / "jobs", time.monotonic() + ENDING
-    ids = [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []
-    if ids:
+    if ids := [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []:
         subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
     while any(runs(folder, cluster, one) for one in ids):
         if time.monotonic() > end:
@@ -93,5 +88,4 @@ def end_jobs(folder, cluster):
 
 
 def runs(folder, cluster, job):
-    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True,
-                          check=False).stdout.strip() == "running"
+    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True, check=False).stdout.strip() == "running"

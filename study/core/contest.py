@@ -1,6 +1,6 @@
 # A contest on one scene: a look at everyone, the gate for those who are near the fastest, and the times of those who agree.
-from collections import Counter
-from dataclasses import dataclass, replace
+from collections import namedtuple
+from dataclasses import replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from study.core.cell import Cell, by_environment, twin_of
@@ -12,13 +12,8 @@ STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
 
 
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """Of the gate: whose motion agrees with the reference's on a scene. `settings`: of the step."""
-    scene: str
-    contenders: list
-    role: str = "gate"
-    settings: tuple = ()
+# Of the gate: whose motion agrees with the reference's on a scene. settings: of the step.
+Asked = namedtuple("Asked", "scene contenders role settings", defaults=("gate", ()))
 
 
 def verdicts(lab, asked, *, each, seconds=None, drop=False):
@@ -26,19 +21,19 @@ def verdicts(lab, asked, *, each, seconds=None, drop=False):
     else enough for all of it and the reference. Those of one environment share a process, which runs the reference once for all; if it
     ends early, its contenders are asked one by one, so that only who ended it is lost; not where it was out of time with enough for
     all of them, which is the reference's."""
-    cells = [(one, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
-                        seconds=seconds or each * (1 + len(one.contenders))))
-             for one in asked for group in by_environment(one.contenders).values()]
-    found = {one: {} for one in asked}
-    for (one, cell), record in zip(cells, lab.run([cell for _, cell in cells], drop)):
+    cells = [(place, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
+                          seconds=seconds or each * (1 + len(one.contenders))))
+             for place, one in enumerate(asked) for group in by_environment(one.contenders).values()]
+    found = [{} for _ in asked]
+    for (place, cell), record in zip(cells, lab.run([cell for _, cell in cells], drop)):
         group = cell.contenders
         slow_reference = record.status == "timeout" and cell.seconds >= each * (1 + len(group))
         if record.done or record.status == "dropped" or slow_reference or len(group) == 1:
-            found[one] |= {who: record.verdicts[who.name] for who in group}
+            found[place] |= {who: record.verdicts[who.name] for who in group}
         else:
-            for said in verdicts(lab, [replace(one, contenders=[who]) for who in group], each=each, seconds=seconds, drop=drop):
-                found[one] |= said
-    return list(found.values())
+            for said in verdicts(lab, [asked[place]._replace(contenders=[who]) for who in group], each=each, seconds=seconds, drop=drop):
+                found[place] |= said
+    return found
 
 
 def agreeing(lab, asked, **limits):
@@ -46,18 +41,9 @@ def agreeing(lab, asked, **limits):
     return [[who for who in one.contenders if said[who][0] == "agrees"] for one, said in zip(asked, verdicts(lab, asked, **limits))]
 
 
-@dataclass(frozen=True)
-class Form:
-    """A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`."""
-    role: str
-    contenders: list
-    processes: int
-    samples: int
-    settings: tuple = ()   # of the step
-    wide: tuple = ()       # names of those that are up to WIDE
-    stretch: tuple = ()    # that is timed, else the scene's
-    look: int = STEPS      # steps of the look
-    patience: float = 1.0
+# A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`. settings: of the step; wide: names
+# of those that are up to WIDE; stretch: that is timed, else the scene's; look: its steps, with this patience.
+Form = namedtuple("Form", "role contenders processes samples settings wide stretch look patience", defaults=((), (), (), STEPS, 1.0))
 
 
 def contests(lab, scene, forms, *, own, always=False, control=False):
@@ -91,8 +77,7 @@ def times_of(rows):
 
 def usual(lab):
     """Contenders of the environment that most have: they share processes."""
-    found = Counter(one.environment for one in lab.contenders).most_common(1)
-    return [one for one in lab.contenders if one.environment == found[0][0]] if found else []
+    return list(max(by_environment(lab.contenders).values(), key=len, default=()))
 
 
 def elsewhere(lab, cell):
@@ -105,5 +90,4 @@ def elsewhere(lab, cell):
 
 
 def about(lab, scenes):
-    """[the record of its description] of each scene."""
     return lab.run([Cell("describe", scene, role="about") for scene in scenes])

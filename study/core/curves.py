@@ -1,6 +1,7 @@
 # Curves of error against time, followed from coarse values to fine ones: which runs are worth making.
 from dataclasses import dataclass, field
 
+from analysis.core.gather import gather
 from analysis.core.outcomes import FINISHED
 
 FAR = 2.0  # a curve that is this far from its family's front, and comes no nearer, is not followed further
@@ -20,11 +21,9 @@ def follow(lab, curves, row, limit, least, share=None, status="not-reached"):
     than `limit` s, `least` is reached, or finer values are of no use; or with one that is dropped, where the budget, or a `share` of
     it, is spent. `row`: of a cell's record."""
     for place in range(max((len(curve.cells) for curve in curves), default=0)):
-        known, chosen = {curve.family: [] for curve in curves}, []
-        for curve in curves:
-            known[curve.family] += curve.rows
+        known, chosen = gather((curve.family, row) for curve in curves for row in curve.rows), []
         for curve in (one for one in curves if not one.ended and place < len(one.cells)):
-            how, reason = status, too_long(curve.rows, limit, curve.finer) or of_no_use(curve.rows, known[curve.family], least)
+            how, reason = status, too_long(curve.rows, limit, curve.finer) or of_no_use(curve.rows, known.get(curve.family), least)
             if not reason and share and lab.left <= (1 - share) * lab.budget:
                 how, reason = "dropped", f"the curves' share of the budget, {share * lab.budget:.0f} s, was spent"
             if reason:

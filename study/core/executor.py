@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from analysis.core.errors import StudyError
+from analysis.core.gather import gather
 from study.core import child, machine
 from study.core.cell import LAYOUT
 
@@ -73,10 +74,7 @@ def compact(output):
     "stretch_us" by the clock and "cpu_us" of the processor, the same where nothing else ran."""
     if "benchmarks" not in output:
         return output
-    groups = {}
-    for row in output["benchmarks"]:
-        if row.get("run_type", "iteration") == "iteration":
-            groups.setdefault(row["name"], []).append(row)
+    groups = gather((row["name"], row) for row in output["benchmarks"] if row.get("run_type", "iteration") == "iteration")
     return {"rows": {name: {"stretch_us": [row.get("real_time") for row in rows],
                             "cpu_us": [row.get("cpu_time") for row in rows]} | {
         key: rows[0][key] if all(row.get(key) == rows[0][key] for row in rows) else [row.get(key) for row in rows]
@@ -103,7 +101,6 @@ def differing(known, found, keys=FINGERPRINT):
 
 
 def need_same(known, found, what):
-    """StudyError naming the first thing in which two contexts differ."""
     if other := differing(known, found):
         key, mine, its = other
         raise StudyError(f"{what}: comes from another machine or build ({key} is '{its}', the set's is '{mine}'): "

@@ -65,12 +65,33 @@ def run_workflow(studyset, columns, stored=False):
     StudyError, or KeyboardInterrupt once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
     studyset.progress.unlink(missing_ok=True)
+    now, since = None, 0.0  # the part and its column at work, and when they began
+
+    def show(display):
+        nonlocal now, since
+        if studyset.progress.exists():
+            known = read_json(studyset.progress)
+            part, column, text = known["part"], known["column"], known["text"]
+            if (part, column) != now:
+                now, since = (part, column), time.monotonic()
+            ahead = planned({one: {name: seconds for name, seconds in names.items() if not studyset.stamp(one, name).exists()}
+                             for one, names in columns.items()})
+            display.show(f"[{list(columns).index(part) + 1}/{len(columns)}] {part}", f"{column}: {known['cells']}, at most "
+                         f"{duration(ahead - (time.monotonic() - since))} left" + (f"; {text}" if text else ""))
+        elif not any(columns.values()):
+            display.show("pages")
     pages = ["/usr/bin/python3", "-m", "study.core.job", ".", "pages"]
-    follow(studyset, pages if stored else _command(studyset), _Cells(studyset, columns))
+    follow(studyset, pages if stored else snakemake(studyset, ROOT / "study" / "Snakefile", "--cores", "all", "--scheduler", "greedy"), show)
+
+
+def snakemake(studyset, snakefile, *words):
+    return ["/usr/bin/python3", "-m", "snakemake", *words, "--snakefile", str(snakefile), "--directory", str(studyset.folder),
+            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
 
 
 def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
-    """Runs a command to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
+    """Runs a command to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it and all that it started here, each
+    after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
         begin = log.tell()
@@ -82,7 +103,11 @@ def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
                 show(display)
                 time.sleep(0.15)
         finally:
-            _stop(process, ends)
+            for sign in ends:
+                if process.poll() is None:
+                    os.killpg(process.pid, sign)
+                    with contextlib.suppress(subprocess.TimeoutExpired):
+                        process.wait(timeout=10)
             display.end()
     if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
         raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
@@ -102,46 +127,7 @@ def _why(log, begin):
     return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
 
-def _command(studyset):
-    return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
-            "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
-            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
-
-
-class _Cells:
-    """Shows the part and its column at work, and the time left; where nothing is run, that pages are drawn."""
-
-    def __init__(self, studyset, columns):
-        self.set, self.columns, self.now, self.since = studyset, columns, None, 0.0
-
-    def __call__(self, display):
-        if self.set.progress.exists():
-            display.show(*self._said(**read_json(self.set.progress)))
-        elif not any(self.columns.values()):
-            display.show("pages")
-
-    def _said(self, part, column, cells, text):
-        if (part, column) != self.now:
-            self.now, self.since = (part, column), time.monotonic()
-        ahead = planned({one: {name: seconds for name, seconds in names.items() if not self.set.stamp(one, name).exists()}
-                         for one, names in self.columns.items()})
-        left = duration(ahead - (time.monotonic() - self.since))
-        place = list(self.columns).index(part) + 1
-        return f"[{place}/{len(self.columns)}] {part}", f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else "")
-
-
-def _stop(process, ends):
-    """Ends the command and everything that it started here."""
-    for sign in ends:
-        if process.poll() is not None:
-            return
-        os.killpg(process.pid, sign)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=10)
-
-
 def duration(seconds):
-    """The text "1 min 20 s"."""
     seconds = max(0, round(seconds))
     if seconds < 60:
         return f"{seconds} s"

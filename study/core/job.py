@@ -72,13 +72,8 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    _without_collection(site.write_part, studyset.folder, part)
-
-
-def _without_collection(make, *what):
-    """Garbage would be looked for in all records again and again, a quarter of the time."""
-    gc.disable()
-    make(*what)
+    gc.disable()  # garbage would be looked for in all records again and again, a quarter of the time
+    site.write_part(studyset.folder, part)
     gc.enable()
 
 
@@ -96,7 +91,9 @@ def pages(studyset):
 def index(studyset, part=None):
     """`part`: all that is new since it was made."""
     from analysis.core import site
-    _without_collection(site.write_index, studyset.folder, part)
+    gc.disable()
+    site.write_index(studyset.folder, part)
+    gc.enable()
 
 
 def end_with(front):

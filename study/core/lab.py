@@ -13,7 +13,6 @@ from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
-from study.core.executor import program_of
 
 ROOM = 2**20  # bytes: where less is free, a failure is none of the program
 BETWEEN = 0.005  # s that the study itself takes for a cell, about: it writes the record, and plans
@@ -42,16 +41,15 @@ class Lab:
         return self.run([cell])[0]
 
     def run(self, cells, drop=False):
-        """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the
-        others run at once on all cores. With `drop`, what is left when the budget is spent gets a record that says
-        so: order cells by their worth."""
+        """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the others run at once on all cores.
+        With `drop`, what is left when the budget is spent gets a record that says so: order cells by their worth."""
         cells = [cell.settled() for cell in cells]
-        self._expect(cells)
+        self.asked |= {self._name(cell) for cell in cells}
+        self.tell()
         found, todo, known, before = {}, [], set(self.names), self.spent
         for cell in dict.fromkeys(cells):
-            path = self._path(cell)
-            if path.exists():
-                found[cell] = self._keep(records.read(path, self._name(cell)))
+            if (self.base / self._name(cell)).exists():
+                found[cell] = self._keep(cell)
                 records.need_same_origin(found[cell], self._asked_of(cell), self.base)
             else:
                 todo.append(cell)
@@ -70,17 +68,11 @@ class Lab:
         return [found[cell] for cell in cells]
 
     def skip(self, cell, status, reason):
-        """The record of a cell that is not run, with its reason."""
         cell = cell.settled()
-        self._expect([cell])
-        return self._skipped(cell, status, reason)
-
-    def _skipped(self, cell, status, reason):
-        path = self._path(cell)
-        if not path.exists():
-            records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
+        self.asked.add(self._name(cell))
+        self.tell()
+        return self._keep(cell, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
                                  "command": executor.command_of(cell), "context": self._context(cell, self.set.facts["context"])})
-        return self._keep(records.read(path, self._name(cell)))
 
     def scene(self, name, document):
         """Writes a scene of the part's own; its name for cells."""
@@ -89,26 +81,23 @@ class Lab:
             write_json(path, document)
         return os.path.relpath(path, ROOT) if path.is_relative_to(ROOT) else str(path)
 
-    def tell(self, text):
-        """Shown beside the cells that are done."""
-        self.text = text
-        self._show_state()
+    def tell(self, text=None):
+        """How many cells are done, and beside it this text from now on."""
+        self.text = self.text if text is None else text
+        self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
 
     def show(self, cells, text):
         """Leaves what there is to say where the front looks for it."""
         write_json(self.set.progress, {"part": self.part, "column": self.column, "cells": cells, "text": text})
 
-    @property
-    def left(self):
-        """Seconds of the budget, counted by the records: the same in a run that was resumed."""
-        return self.budget - self.spent
+    left = property(lambda self: self.budget - self.spent)  # seconds of the budget, counted by the records: the same in a run that was resumed
 
     def _made(self, cell, drop):
-        program = program_of(*cell.built.split("@"))
+        program = executor.program_of(*cell.built.split("@"))
         if not cell.own and not (ROOT / program).exists():  # `mbs` is there, or nothing is
-            return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
+            return self.skip(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:
-            return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
+            return self.skip(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self._asked_of(cell)
         data = executor.run(cell, context if cell.own and cell.contenders else None, self.set.scratch)
         if data["status"] != records.RUN_ENDED and (NOT_WRITTEN.search(data["reason"]) or ROOM > min(
@@ -117,40 +106,32 @@ class Lab:
                              "that run; make room and run it again")
         if not data["context"]:
             data["context"] = self._context(cell, context)
-        if not self._path(cell).exists():  # a node that was given up may be at work still: the first record stays
-            records.write(self._path(cell), data)
-        return self._keep(records.read(self._path(cell), self._name(cell)))
+        return self._keep(cell, data)
 
     def _asked_of(self, cell):
-        """The context of a cell's environment."""
         return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
-
-    def _expect(self, cells):
-        self.asked |= {self._name(cell) for cell in cells}
-        self._show_state()
-
-    def _show_state(self):
-        self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
 
     @staticmethod
     def _context(cell, context):
         """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
         return context if cell.own else {key: context[key] for key in executor.OF_ALL if key in context}
 
-    def _keep(self, record):
+    def _keep(self, cell, data=None):
+        """The cell's record, which counts from now on. `data`: what it says, if there is none yet."""
+        path = self.base / self._name(cell)
+        if data and not path.exists():  # a node that was given up may be at work still: the first record stays
+            records.write(path, data)
+        record = records.read(path, self._name(cell))
         if record.name not in self.names:
             taken = BETWEEN + record.seconds / (1 if record.cell["timed"] else cores())
             with self.lock:
                 self.names[record.name] = None  # in their order
                 self.spent += taken
-            self._show_state()
+            self.tell()
         return record
 
     def _name(self, cell):
         return f"{self.column}/{cell.file_name()}"
-
-    def _path(self, cell):
-        return self.base / self._name(cell)
 
 
 def cores():

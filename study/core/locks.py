@@ -34,8 +34,7 @@ def only_one_study(wait=False, tell=print):
 
 
 def only_one_timing():
-    """Holds the machine for what is timed: whoever measures holds it, not the study that it belongs to, which may
-    have died a moment ago."""
+    """Holds the machine for what is timed: whoever measures holds it, not the study that it belongs to, which may have died a moment ago."""
     path = Path(tempfile.gettempdir()) / "mbs-timing.lock"
     return _hold(path, f"something else is being timed on this machine ({path} is held)", 30)
 

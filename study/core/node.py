@@ -11,7 +11,6 @@ from analysis.core.files import ROOT, digest, read_object, write_json, write_tex
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
 from study.core.cell import LAYOUT, Cell, control, twin_of
-from study.core.executor import program_of
 from study.core.studyset import context_of, start, writable
 
 CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
@@ -46,7 +45,7 @@ def own_sets(folder):
 def forget(folder):
     """Has nodes asked again that were refused for what may be mended, as a full disk, or with another program."""
     for path, (_, _, program) in refused(folder).items():
-        if not program or program != digest(ROOT / program_of()):
+        if not program or program != digest(ROOT / executor.program_of()):
             path.unlink()
 
 
@@ -78,12 +77,12 @@ def admit(studyset):
         if only.exists() and only.read_text().strip() != name():
             reason = f"it is that of {only.read_text().strip()} alone, whose A/A control failed"
         elif reason:
-            kind = digest(f"{sorted(executor.fingerprint(context).items())} {digest(ROOT / program_of())}")[:6]
+            kind = digest(f"{sorted(executor.fingerprint(context).items())} {digest(ROOT / executor.program_of())}")[:6]
             own = _beside(folder, f"{_slug(context['cpu_model'])}-{kind}")
         elif not (home(folder) / "nodes" / name()).exists() and not only.exists():
             reason = uncontrolled(studyset)
             own, alone = _beside(folder, _slug(name())) if reason else None, True
-        lasting = digest(ROOT / program_of())
+        lasting = digest(ROOT / executor.program_of())
     except (StudyError, OSError) as error:  # neither of this set nor of another one: its disk is full, its program does not run
         reason = str(error)
     if reason:
@@ -99,25 +98,21 @@ def another(studyset, context):
     if other := executor.differing(studyset.facts["context"], context):
         key, mine, its = other
         return f"another machine or build ({key} is '{its}' on {context['cpu_model']}, the set's is '{mine}')"
-    known, program = studyset.facts["programs"], ROOT / program_of()
+    known, program = studyset.facts["programs"], ROOT / executor.program_of()
     return "another build (mbs)" if known.get("mbs") not in (None, digest(program)[:16]) else ""
 
 
 def uncontrolled(studyset):
-    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not. StudyError where it
-    does not run."""
+    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not. StudyError where it does not run."""
     from analysis.core.timing import processes, ratio  # needs pandas
     from study.core.timing import LAYOUTS
     one = studyset.contenders[0]
     twin = twin_of(one)
     with locks.only_one_timing():
         for _ in range(TRIES):
-            found = []
-            for number in range(1, LAYOUTS + 1):
-                cell = Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number,
-                            f"{LAYOUT}{number}", timed=True).settled()
-                found.append(Record("control", **executor.run(cell, None, studyset.scratch)))
-            rows = processes(found)
+            cells = [Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number, f"{LAYOUT}{number}",
+                          timed=True).settled() for number in range(1, LAYOUTS + 1)]
+            rows = processes([Record("control", **executor.run(cell, None, studyset.scratch)) for cell in cells])
             for row in rows[rows.status != "ok"].itertuples():  # its ratio would be none, and none is decided
                 raise StudyError(f"its A/A control does not run: {row.status}: {row.reason}")
             seen = ratio(rows, twin.name, one.name)

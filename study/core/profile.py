@@ -1,6 +1,6 @@
 # Profiles (study/profiles/NAME.yaml): how much of each part is run.
 import importlib
-from dataclasses import dataclass
+from collections import namedtuple
 
 import yaml
 
@@ -12,13 +12,8 @@ FOLDER = ROOT / "study" / "profiles"
 STARTED, DRAWN = 4.5, 0.015  # s around the columns of a part, about: its process and pages; for each second of theirs, the last cells
 
 
-@dataclass(frozen=True)
-class Profile:
-    name: str
-    title: str
-    blas: dict     # {folder or "all": BLAS and LAPACK pair}
-    dropped: str   # what a smaller budget leaves out, and why
-    parts: dict    # {part: its settings}
+# blas: {folder or "all": BLAS and LAPACK pair}; dropped: what a smaller budget leaves out, and why; parts: {part: its settings}
+Profile = namedtuple("Profile", "name title blas dropped parts")
 
 
 def names():
@@ -45,10 +40,9 @@ def read(path, name, chosen=None):
     more = data["parts"].keys() if chosen is not None and isinstance(data["parts"], dict) else ()
     need_keys(path, "parts", data["parts"], {*(parts() if chosen is None else chosen), *more})
     for part in parts() if chosen is None else chosen:
-        settings = data["parts"][part]
-        wanted = plan_of(part).SETTINGS
-        need_keys(path, part, settings, {"seconds", *wanted})
-        for key, kind in {"seconds": float, **wanted}.items():
+        settings, wanted = data["parts"][part], {"seconds": float, **plan_of(part).SETTINGS}
+        need_keys(path, part, settings, set(wanted))
+        for key, kind in wanted.items():
             where, value = f"{path}: {part}: {key}", settings[key]
             if not isinstance(value, (int, float) if kind is float else kind) or isinstance(value, bool) != (kind is bool):
                 raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
@@ -58,7 +52,6 @@ def read(path, name, chosen=None):
 
 
 def plan_of(part):
-    """The module study/PART/plan.py."""
     return importlib.import_module(f"study.{part}.plan")
 
 
@@ -85,6 +78,5 @@ def by_share(columns):
 def need_keys(path, what, data, keys):
     if not isinstance(data, dict):
         raise StudyError(f"{path}: {what} needs settings, found {type(data).__name__}")
-    wrong = sorted(map(str, set(data) ^ keys))
-    if wrong:
+    if wrong := sorted(map(str, set(data) ^ keys)):
         raise StudyError(f"{path}: {what}: missing or unknown: {', '.join(wrong)}")

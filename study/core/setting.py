@@ -8,10 +8,8 @@ from analysis.core.files import ROOT
 
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
-EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "scale-equations",
-            "judge-every"}  # all serve these
-LOOSENED = {"loose": 1e3, "one-pass": 1e6}  # tolerances that stand for so many times the automatic one, which the caller
-                                            # of `words` knows
+EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "scale-equations", "judge-every"}  # all serve these
+LOOSENED = {"loose": 1e3, "one-pass": 1e6}  # tolerances: so many times the automatic one, which the caller of `words` knows
 
 
 @dataclass(frozen=True)
@@ -20,23 +18,11 @@ class Setting:
     changes: tuple = ()  # (option, value) pairs; an option without a value has ""
     title: str = field(default="", compare=False)
 
-    @property
-    def name(self):
-        """Its title, or "saddle-point, tangent kept"."""
-        return self.title or ", ".join([self.scheme, *(f"{option} {value}".strip() for option, value in self.changes)])
-
-    @property
-    def file_name(self):
-        return self.name.replace(", ", "-").replace(" ", ".")
-
-    @property
-    def order(self):
-        return ORDERS.get(self.scheme, 2)
-
-    @property
-    def parent(self):
-        """The scheme without changes: what this is compared with first."""
-        return Setting(self.scheme)
+    # Its title, or "saddle-point, tangent kept".
+    name = property(lambda self: self.title or ", ".join([self.scheme, *(f"{option} {value}".strip() for option, value in self.changes)]))
+    file_name = property(lambda self: self.name.replace(", ", "-").replace(" ", "."))
+    order = property(lambda self: ORDERS.get(self.scheme, 2))
+    parent = property(lambda self: Setting(self.scheme))  # the scheme without changes: what this is compared with first
 
     @property
     def needs(self):
@@ -46,10 +32,8 @@ class Setting:
             found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
         return found - {"penalty", "double"}
 
-    @property
-    def loosened(self):
-        """How many times the automatic tolerance its own is; None if it does not refer to that."""
-        return LOOSENED.get(dict(self.changes).get("tolerance"))
+    # How many times the automatic tolerance its own is; None if it does not refer to that.
+    loosened = property(lambda self: LOOSENED.get(dict(self.changes).get("tolerance")))
 
     def words(self, base=(), tolerance=None):
         """Of the command line. `base`: (option, value) pairs that the setting's own go before; `tolerance`, m: what

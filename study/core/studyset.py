@@ -16,19 +16,13 @@ from study.core import executor, locks, profile as profiles
 from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
-BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
-         ".cluster", ".snakemake"}                                          # ... and on a cluster
+BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml", ".cluster", ".snakemake"}  # written before set.json, or on a cluster
 
 
 class StudySet(Folder):
-    @cached_property
-    def profile(self):
-        return profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"])
-
-    @cached_property
-    def contenders(self):
-        """Those of the selection on their usual pairs, in the registry's order."""
-        return on_usual_pairs(self.registry, self.profile.blas, select(self.registry, self.facts["only"]))
+    profile = cached_property(lambda self: profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"]))
+    # Those of the selection on their usual pairs, in the registry's order.
+    contenders = cached_property(lambda self: on_usual_pairs(self.registry, self.profile.blas, select(self.registry, self.facts["only"])))
 
     def context(self, one):
         """What is known of a contender's environment; asked of its program the first time."""
@@ -47,9 +41,8 @@ class StudySet(Folder):
                 known.update(facts_of(self.folder)["programs"])
                 write_json(self.folder / "set.json", self.facts | {"programs": found | known})
                 known.update(found | known)
-        for name in found:
-            if known[name] != found[name]:
-                raise _other(self.folder, f"programs: {name} was built anew")
+        if changed := [name for name in found if known[name] != found[name]]:
+            raise _other(self.folder, f"programs: {changed[0]} was built anew")
 
     def clear(self):
         """Removes what a process that was killed has left, in the set's own folders only."""
@@ -83,7 +76,6 @@ def context_of(one):
 
 
 def listed():
-    """The Registry of the present build."""
     if not (ROOT / program_of()).exists():
         raise StudyError(f"{program_of()} is missing: build it with study/setup")
     found = executor.run(Cell("list").settled(), None)
@@ -130,8 +122,7 @@ def need_own(folder, begun=BEGUN):
         return
     names = {path.name for path in folder.iterdir() if not path.name.startswith(".partial-")}
     if names and (".lock" not in names or not names <= begun):
-        raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, "
-                         "or an empty one")
+        raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, or an empty one")
 
 
 def writable(folder):
@@ -167,7 +158,6 @@ def start(folder, profile, only, chosen):
 
 
 def begun(profile, only, chosen, context, **question):
-    """The facts of a set that begins now."""
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")
     return {"profile": profile, "only": only, "parts": chosen, "context": context, "programs": {}, "date": now, **question}
 
@@ -200,8 +190,7 @@ def _other(folder, what):
 
 
 def select(registry, only, option="--only: "):
-    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples. `option`: how they
-    were asked for."""
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples. `option`: how they were asked for."""
     folders = {entry["folder"]: entry for entry in registry.entries}
     for name in only:
         entry = folders.get(name.split("/")[0])
@@ -210,10 +199,8 @@ def select(registry, only, option="--only: "):
         if entry and name in entry.get("lacking", {}):
             raise StudyError(f"{option}{name} is unavailable: {entry['lacking'][name]}")
         if name not in folders and name not in registry.variants:
-            raise StudyError(f"{option}unknown implementation '{name}'; known: "
-                             f"{', '.join([*folders, *registry.variants])}")
-    return [name for name in registry.variants
-            if name in only or name.split("/")[0] in only or not only and name not in registry.examples]
+            raise StudyError(f"{option}unknown implementation '{name}'; known: {', '.join([*folders, *registry.variants])}")
+    return [name for name in registry.variants if name in only or name.split("/")[0] in only or not only and name not in registry.examples]
 
 
 def finish(studyset, part, column, names):
@@ -242,14 +229,10 @@ def reopen(studyset, columns):
 
 def _there_now(studyset, stamp):
     """Paths of a column's records of programs that were not there, and are now."""
-    base, found = studyset.folder / "raw" / stamp.parent.name, []
-    for name in read_object(stamp) if stamp.exists() else ():
-        path = base / name
-        record = records.read(path, name) if path.exists() else None
-        program = record and record.status == "unavailable" and record.cell["program"]
-        if program and program != "mbs" and (ROOT / program_of(program)).exists():
-            found.append(path)
-    return found
+    known = read_object(stamp) if stamp.exists() else ()
+    there = {name: path for name, path in records.files_of(studyset.folder, stamp.parent.name, stamp.name).items() if name in known}
+    lacking = {path: one.cell["program"] for name, path in there.items() for one in [records.read(path, name)] if one.status == "unavailable"}
+    return [path for path, program in lacking.items() if program != "mbs" and (ROOT / program_of(program)).exists()]
 
 
 def _empty(page):
@@ -259,28 +242,22 @@ def _empty(page):
 def need_records(studyset):
     """StudyError naming a record of a finished column that is missing or was changed."""
     for stamp in sorted((studyset.folder / ".done").glob("*/[!.]*")):
-        missing = _missing(studyset, stamp)
-        if missing:
+        if missing := _missing(studyset, stamp):
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")
 
 
 def need_tables(studyset):
-    """StudyError naming a table that was changed."""
     for part in studyset.facts["parts"]:
         need_unchanged(studyset.folder, part)
 
 
 def _missing(studyset, stamp):
     """Paths of a column's records that are not there; StudyError naming one that was changed or added."""
-    found, known = [], read_object(stamp)
-    for name, path in records.files_of(studyset.folder, stamp.parent.name, stamp.name).items():
+    known, there = read_object(stamp), records.files_of(studyset.folder, stamp.parent.name, stamp.name)
+    for name, path in there.items():
         if name not in known:
             raise StudyError(f"{path} is no record of this study: remove it")
-    for name, kept in known.items():
-        path = studyset.folder / "raw" / stamp.parent.name / name
-        if not path.exists():
-            found.append(path)
-        elif digest(path) != kept:
+        if digest(path) != known[name]:
             records.read(path, name)  # says what is wrong with it
             raise StudyError(f"{path} is not the one that was measured: restore it, or remove it to have it measured again")
-    return found
+    return [studyset.folder / "raw" / stamp.parent.name / name for name in known if name not in there]

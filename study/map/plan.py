@@ -1,7 +1,5 @@
 # The map: who is fastest at which size and fill of the N-four-bar. A column is a size; a scene a size at a fill.
-#
-# For each scene: rough pilots say who is hopeless, the gate says who is right, the rest is timed in turns. All of that
-# is decided from records, so that a run that was interrupted decides alike.
+# All of it is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
 from analysis.map.timed import leaders
 from study.core.cell import Cell, Contender, by_environment
@@ -64,8 +62,7 @@ def _unavailable(lab, scene):
     """A record for each implementation that cannot take part at all."""
     for entry in lab.registry.entries:
         if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
-            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"),
-                     "unavailable", entry["reason"])
+            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"), "unavailable", entry["reason"])
 
 
 def _seeds(lab, timed):

@@ -1,17 +1,10 @@
-# A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed.
-#
-# Rough pilots are a few steps from the start. Who is slower than the fastest library by more than the profile's factor is
-# excluded: neither checked nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast
-# one excludes nobody, and code of our own never excludes anybody. In filled scenes the two fastest of each family stay
-# within FAMILY times that factor: maps are drawn for families too.
-#
-# A few processes of all are timed, without those whose stretch takes another number of passes, and then more of those who lead.
+# A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed (README.md).
 import math
+from collections import namedtuple
 from dataclasses import dataclass, field
 
 from analysis.core.timing import LEFT_OUT, differing
 from analysis.map import timed
-from analysis.map.timed import layers, leaders, timed_rows
 from study.core import contest
 from study.core.cell import CONTROL, Cell, Contender, twin_of
 from study.core.timing import measure
@@ -26,19 +19,11 @@ RUNS = 3  # of a pilot; the fastest counts
 WORK = 3200  # variables times steps of a pilot
 
 
-@dataclass(frozen=True)
-class Scene:
-    variables: int
-    fill: float | None  # share of the tangent's n^2 positions; None: the mechanism's own
-
-    @property
-    def name(self):
-        return f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}")
-
-    @property
-    def steps(self):
-        """About those of its stretch, which `mbs bench` chooses by the size."""
-        return max(40, min(800, 800 * 400 // self.variables))
+class Scene(namedtuple("Scene", "variables fill")):
+    """`fill`: share of the tangent's n^2 positions; None: the mechanism's own."""
+    name = property(lambda self: f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}"))
+    # About those of its stretch, which `mbs bench` chooses by the size.
+    steps = property(lambda self: max(40, min(800, 800 * 400 // self.variables)))
 
 
 @dataclass
@@ -56,7 +41,7 @@ class TimedScene:
             pairs = [one.blas for one in self.costs if one.ranked and self.scene.fill is None]
             control = [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
             self.records = self.processes([*self.costs, *control], count, "time")
-            wrong = differing(timed_rows(self.records))
+            wrong = differing(timed.timed_rows(self.records))
             if not wrong:
                 return
             for one in [one for one in self.costs if one.name in wrong]:
@@ -66,45 +51,34 @@ class TimedScene:
     def again(self, count):
         """Processes 1 … `count` of those who lead, among the libraries or among all, and of the fastest of all."""
         rankings = self.rankings
-        names = leaders(rankings.values())
-        if names:
+        if names := timed.leaders(rankings.values()):
             names.add(rankings["all"].winner)
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
             fastest = {ranking.winner for ranking in rankings.values() if ranking}
-            twins = [twin_of(one) for one in chosen if one.name in fastest]
-            self.records += self.processes([*chosen, *twins], count, "again")
+            self.records += self.processes([*chosen, *(twin_of(one) for one in chosen if one.name in fastest)], count, "again")
 
     @property
     def rankings(self):
-        """{layer: Ranking or None}"""
-        scene = timed.Scene(timed_rows(self.records))
-        return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
+        scene = timed.Scene(timed.timed_rows(self.records))
+        return {layer: scene.rank(names) for layer, names in timed.layers(self.lab.registry).items()}
 
     def processes(self, contenders, count, role):
         """Their records. The pilots decide how many samples fill a process, never what a sample is."""
         lab, limit = self.lab, self.lab.settings["limits"]["time"]
-        sample = max(TURN * len(contenders),
-                     1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
+        sample = max(TURN * len(contenders), 1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
         samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
         return measure(lab, self.scene.name, contenders, processes=count, role=role, repetitions=samples,
                        seconds=limit, settings=("--patience", limit / 10))
 
 
-@dataclass(frozen=True)
-class Pilot:
-    record: object
-    step_us: float  # infinite if it failed; the least that is proved if it ran out of time
-    fill: float = math.nan
-
-    @property
-    def alive(self):
-        return math.isfinite(self.step_us)
+class Pilot(namedtuple("Pilot", "record step_us fill", defaults=(math.nan,))):
+    """`step_us`: infinite if it failed; the least that is proved if it ran out of time."""
+    alive = property(lambda self: math.isfinite(self.step_us))
 
 
 def fit(lab, scene, contenders):
-    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
-    that says why not."""
+    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record that says why not."""
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
     verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
@@ -130,27 +104,21 @@ def _pilots(lab, scene, contenders):
         if rows:
             yield Pilot(record, min(rows[0]["cpu_us"]) / steps, rows[0]["fill_percent"])
         else:  # a warm-up and RUNS stretches were not done within the limit
-            late = record.status == "timeout"
-            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
+            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if record.status == "timeout" else math.inf)
 
 
-@dataclass(frozen=True)
-class Rule:
-    lab: object
-    scene: object
-    pilots: dict
-
+class Rule(namedtuple("Rule", "lab scene pilots")):
     def best(self, verdicts):
         """Least time of the ranked ones that are not rejected; of the libraries, unless there is nobody else."""
-        alive = {one: pilot.step_us for one, pilot in self.pilots.items()
-                 if pilot.alive and one.ranked and verdicts.get(one, True)}
-        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own]
-                   or alive.values(), default=math.inf)
+        alive = {one: pilot.step_us for one, pilot in self.pilots.items() if pilot.alive and one.ranked and verdicts.get(one, True)}
+        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own] or alive.values(), default=math.inf)
 
     def chosen(self, verdicts):
-        limit = self._factor * self.best(verdicts)
+        known, filled = self.lab.settings["slower"], self.scene.fill is not None
+        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
+        limit = (known["filled"] if filled else column.get("slower", known["natural"])) * self.best(verdicts)
         kept = {one for one, pilot in self.pilots.items() if pilot.alive and pilot.step_us <= limit}
-        if self.scene.fill is not None:  # the two fastest of each family
+        if filled:  # the two fastest of each family
             near = [one for one, pilot in self.pilots.items() if pilot.step_us <= FAMILY * limit and verdicts.get(one, True)]
             near.sort(key=lambda one: self.pilots[one].step_us)
             said = self.lab.registry.variants
@@ -158,25 +126,12 @@ class Rule:
                      for one in [one for one in near if said[one.variant].get(key, False) == value][:2]}
         return [one for one in self.pilots if one in kept]
 
-    @property
-    def _factor(self):
-        known = self.lab.settings["slower"]
-        if self.scene.fill is not None:
-            return known["filled"]
-        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
-        return column.get("slower", known["natural"])
-
 
 def alternatives(lab, scene):
     """Contenders of the profile's other pairs at this size; what is missing gets a record that says why."""
-    found = {}
-    for entry in lab.settings["alternatives"]:
-        usual = [one for one in lab.contenders if one.variant in entry["implementations"]
-                 or one.variant.split("/")[0] in entry["implementations"]]
-        for one in usual if scene.variables in entry["columns"] else []:
-            for pair in entry["blas"]:
-                if pair != one.blas:
-                    found[Contender(f"{one.name}+{pair}", one.variant, pair)] = lab.registry.pairs.get(pair, "unknown pair")
+    found = {Contender(f"{one.name}+{pair}", one.variant, pair): lab.registry.pairs.get(pair, "unknown pair")
+             for entry in lab.settings["alternatives"] if scene.variables in entry["columns"] for one in lab.contenders
+             if {one.variant, one.variant.split("/")[0]} & set(entry["implementations"]) for pair in entry["blas"] if pair != one.blas}
     for one, reason in found.items():
         if reason:
             lab.skip(Cell("bench", scene.name, (one,), role="unavailable"), "unavailable", reason)

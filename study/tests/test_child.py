@@ -49,9 +49,9 @@ def test_time_limit_ends_grandchildren_too(tmp_path):
 
 def test_a_signal_whose_exception_was_swallowed_ends_the_study_before_the_next_child(monkeypatch):
     monkeypatch.setattr(child, "_signals", [15])
-    with pytest.raises(child.Signalled) as ended:
+    with pytest.raises(KeyboardInterrupt) as ended:
         shell("exit 0")
-    assert ended.value.number == 15
+    assert ended.value.args == (15,)
 
 
 @pytest.mark.parametrize("name", ["INT", "TERM", "HUP"])

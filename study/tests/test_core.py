@@ -540,7 +540,8 @@ def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
 def test_the_workflow_runs_in_a_folder_of_any_name(tmp_path):
     folder = tmp_path / "a: b"
     write_json(folder / ".parts.json", ["stability"])
-    done = subprocess.run([*front._command(studyset.StudySet(folder)), "--dry-run"], cwd=folder, capture_output=True, text=True)
+    command = front.snakemake(studyset.StudySet(folder), ROOT / "study" / "Snakefile", "--cores", "all", "--dry-run")
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0 and ".done/stability.page" in done.stdout + done.stderr, done.stderr
 
 

@@ -6,7 +6,7 @@ from textwrap import shorten
 import pandas
 from scipy.stats import gmean
 
-from analysis.core.text import between, bounded, ends, interval, number
+from analysis.core.text import between, bounded, ends, number
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
