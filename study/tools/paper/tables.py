@@ -150,7 +150,7 @@ def differs(known):
     """Where no library is among the best on all machines: on each who is fastest, and what those take who are so elsewhere."""
     rows, differ = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
     for one in differ[:DIFFERING]:
-        found = ["; ".join([ranking.winner, *(f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
+        found = ["; ".join([ranking.winner, *(f"{name} {between(*ranking.ratios[name][:3])}" for name in dict.fromkeys(one.winners)
                                               if name != ranking.winner and name in ranking.ratios)]) for ranking in one.machines]
         rows.append((one.question.scene, one.question.form.partition("-")[0], number(one.question.variables, 5), *found,
                      f"{one.robust} {number(one.worst.get(one.robust))}"))
