@@ -99,7 +99,7 @@ def test_orders_of_elimination_have_rows_where_they_were_computed():
 
 def mechanisms(disturb=lambda family, name: 1.0):
     """Six families: one/a is the fastest where the factor has few operations, one/b where it has many."""
-    features = dict.fromkeys((*times.FEATURES, *rule.ALONE), 1.0) | {"passes": 2.0}
+    features = dict.fromkeys((*times.FEATURES, *rule.ALONE), 1.0) | {"passes": 2.0, "saddle": 0.0}
     known, rows = [], []
     for family, column in (("chain", 3), ("tree", 2), ("grid", 6), ("beam", 30), ("block", 40), ("shell", 50)):
         for size in (10, 100, 1000):
@@ -262,13 +262,17 @@ def test_the_rule_by_hand_is_held_to_the_same_bounds():
 
 
 def test_who_was_not_asked_leaves_agreement_open():
-    scenes = mechanisms()["scenes"]
-    assert bounds._agreement(scenes)[0][3] is True
+    tables = mechanisms()
+    scenes, known = tables["scenes"], tables["mechanisms"]
+    assert bounds._agreement(scenes, known)[0][3] is True
     scenes.loc[scenes.scene == "grid:10", ["verdict", "status"]] = "", "slower"
-    _, _, text, holds = bounds._agreement(scenes)[0]
+    _, _, text, holds = bounds._agreement(scenes, known)[0]
     assert holds is None and text == "51 of 51 checks; 3 that have a time were not asked"
     scenes.loc[scenes.scene == "beam:10", "verdict"] = "disagrees"
-    assert bounds._agreement(scenes)[0][3] is False
+    _, _, text, holds = bounds._agreement(scenes, known)[0]
+    assert holds is False and "other form" not in text
+    _, _, text, holds = bounds._agreement(scenes, known.assign(saddle=(known.scene == "beam:10").astype(int)))[0]
+    assert holds is False and "; in 3 of these `mbs describe` takes the other form" in text
 
 
 def test_hybrid_is_held_against_those_it_replaces_on_the_look_where_one_was_not_timed():
