@@ -10,7 +10,8 @@ import numpy
 
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, of_run
-from study.scenes import mechanics, metric
+from study.scenes import metric
+from study.scenes.mechanics import TOLERANCE
 from study.scenes.metric import extrapolate
 from study.scenes.problems import read_list
 from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
@@ -98,8 +99,7 @@ def reference(subject, runs=()):
         if name in CLOSED:
             less, origin = CLOSED[name](times * (1 + ULP)), "rounding"
         else:
-            with mechanics.tolerance(100 * mechanics.TOLERANCE):
-                less, origin = KNOWN[name](times), "a hundred times the tolerance"
+            less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
     known, less = ({column: values for column, values in one.items() if column.split(".")[0] in judged}
                    for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
