@@ -13,13 +13,13 @@ import numpy
 from scipy.integrate import solve_ivp
 
 from analysis.engines import andrews
+from study.scenes.mechanics import double_pendulum
 
 DURATION_S, REGULAR_S, PENDULUM_S = 5.0, 0.6, 2.0
 PENDULUM, ANDREWS = "double-pendulum", "andrews"
 ANDREWS_SCENE = "harness/scenes/problems/a03_andrews.json"
 SOLVERS = ("ida",)  # who is given our equations, and so any scene; engines have models of rods alone
 FLOOR = 1e-13      # m: no error is shown below it; the references' own are below 2e-14
-GRAVITY = 9.81
 LONGEST = 1e-3     # s, a step of the integration of the double pendulum: rounding alone is left
 
 
@@ -87,9 +87,8 @@ def _known(name, times):
 
 
 def positions(times, longest=LONGEST):
-    """Of B and C at `times`: (point, axis, time). Angles from +x, rods of 1 m, 1 kg and 1.5 m, 1.5 kg."""
-    angles = _motion(longest)(times)
-    first, second = (numpy.array([numpy.cos(angle), numpy.sin(angle)]) for angle in angles[:2])
+    """Of B and C at `times`: (point, axis, time). Rods of 1 m, 1 kg and 1.5 m, 1.5 kg, released along +x."""
+    first, second = (numpy.array([numpy.sin(angle), -numpy.cos(angle)]) for angle in _motion(longest)(times)[:2])
     return numpy.array([first, first + 1.5 * second])
 
 
@@ -97,17 +96,5 @@ def positions(times, longest=LONGEST):
 def _motion(longest):
     """The state at any times; between its steps it is interpolated in the seventh order. A little beyond the end, where
     the last sample of a rounded step may lie."""
-    return solve_ivp(_rates, (0, 1.05 * PENDULUM_S), [0.0, 0.0, 0.0, 2.0], "DOP853", rtol=1e-13, atol=1e-14,
-                     max_step=longest, dense_output=True).sol
-
-
-def _rates(_, state):
-    first, second, first_rate, second_rate = state
-    coupling = 1.5 * 1.0 * 1.5 / 2  # m2 L1 L2 / 2
-    cosine, sine = math.cos(first - second), math.sin(first - second)
-    a, b, c = 1 / 3 + 1.5, coupling * cosine, 1.5 * 1.5**2 / 3
-    right = (-coupling * sine * second_rate**2 - GRAVITY * (0.5 + 1.5) * math.cos(first),
-             coupling * sine * first_rate**2 - GRAVITY * 1.5 * 0.75 * math.cos(second))
-    determinant = a * c - b * b
-    return [first_rate, second_rate, (c * right[0] - b * right[1]) / determinant,
-            (a * right[1] - b * right[0]) / determinant]
+    return solve_ivp(double_pendulum((1.0, 1.5), (1.0, 1.5)), (0, 1.05 * PENDULUM_S), [math.pi / 2, math.pi / 2, 0.0, 2.0], "DOP853",
+                     rtol=1e-13, atol=1e-14, max_step=longest, dense_output=True).sol

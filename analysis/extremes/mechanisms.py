@@ -1,5 +1,4 @@
 # More mechanisms whose motion is known: with a light part, with speeds that do not agree, and the standard problems.
-import math
 from dataclasses import dataclass
 
 import numpy
@@ -8,6 +7,7 @@ from scipy.integrate import solve_ivp
 from analysis.extremes import scenes
 from analysis.extremes.linkages import Dyad, Linkage, Side
 from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod
+from study.scenes.mechanics import double_pendulum
 from study.scenes.references import CLOSED, KNOWN
 
 
@@ -20,25 +20,17 @@ def _of_rods(motion, *rods):
 
 @dataclass(frozen=True)
 class LightEnd(Motion):
-    """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line. Its two equations of
-    motion in the angles from the downward vertical, that of the lower rod divided by its mass, are integrated."""
+    """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line."""
     mass: float                 # kg, of the lower rod
 
     truth, accuracy = "equations of its own, integrated", 1e-8
     start, tolerance = 1.0, 1e-12  # rad
 
     def solutions(self, times):
-        def derivative(_, state):
-            a, b, da, db = state.tolist()  # numbers of Python's own, ten times as fast
-            sine, cosine = math.sin(a - b), math.cos(a - b)
-            (p, q), (r, s) = (1 / 3 + self.mass, self.mass / 2 * cosine), (cosine / 2, 1 / 3)
-            upper = -self.mass / 2 * sine * db**2 - GRAVITY * (1 / 2 + self.mass) * math.sin(a)
-            lower = sine / 2 * da**2 - GRAVITY / 2 * math.sin(b)
-            return [da, db, (s * upper - q * lower) / (p * s - q * r), (p * lower - r * upper) / (p * s - q * r)]
         times = numpy.asarray(times, dtype=float)
         if not len(times):
             return [dict.fromkeys(self.columns, times)]
-        a, b = solve_ivp(derivative, (0, max(times[-1], 1e-9)), [self.start, self.start, 0, 0], "DOP853", times,
+        a, b = solve_ivp(double_pendulum((1, 1), (1, self.mass)), (0, max(times[-1], 1e-9)), [self.start, self.start, 0, 0], "DOP853", times,
                          rtol=self.tolerance, atol=self.tolerance).y[:2]
         x, y = numpy.sin(a), -numpy.cos(a)
         return [{"B.x": x, "B.y": y, "C.x": x + numpy.sin(b), "C.y": y - numpy.cos(b)}]

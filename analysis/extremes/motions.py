@@ -10,9 +10,10 @@
 from dataclasses import dataclass
 
 import numpy
-from scipy.special import ellipj, ellipkinc
 
-GRAVITY = 9.81  # m/s^2
+from study.scenes.mechanics import GRAVITY
+from study.scenes.references import turning
+
 POINTS = 6      # of a chain, whose places are kept, at most: all of them up to five loops
 
 
@@ -74,24 +75,8 @@ class Chain(Motion):
         rods, couplers = map(sum, self.masses)
         return self.gravity / self.length * (rods / 2 + couplers) / (rods / 3 + couplers)
 
-    def phi(self, times):
-        """(sin phi, cos phi) at `times`; psi = phi - pi is the angle from the downward vertical."""
-        k, half = self.k, (self.angle - numpy.pi) / 2
-        bottom = self.rate**2 + 4 * k * numpy.cos(self.angle / 2)**2  # psi'^2 where the energy is kinetic
-        if self.rate == 0 and (k == 0 or abs(numpy.sin(self.angle)) < 1e-12):
-            return numpy.full_like(times, numpy.sin(self.angle)), numpy.full_like(times, numpy.cos(self.angle))
-        if bottom > 4 * k:  # turns over: sin(psi / 2) = sn
-            parameter = 4 * k / bottom
-            sn, cn, _, _ = ellipj(ellipkinc(half, parameter) + bottom**0.5 * times / 2, parameter)
-        else:               # swings: sin(psi / 2) = kappa sn
-            kappa = (bottom / (4 * k))**0.5
-            start = ellipkinc(numpy.arctan2(numpy.sin(half), self.rate / (2 * k**0.5)), kappa**2)
-            sn, _, cn, _ = ellipj(start + k**0.5 * times, kappa**2)
-            sn = kappa * sn
-        return -2 * sn * cn, 2 * sn**2 - 1
-
     def solutions(self, times):
-        sine, cosine = self.phi(numpy.asarray(times, dtype=float))
+        sine, cosine, _ = turning(numpy.asarray(times, dtype=float), self.k, self.angle, self.rate)
         return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
             ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
 

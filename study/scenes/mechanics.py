@@ -2,6 +2,8 @@
 # integrated with step control: they share neither coordinates, mass matrix nor constraints with `mbs`.
 #
 # Each function takes times (s) and the tolerance of its integration, and returns {column of an output file: values}; numbers are the scenes'.
+import math
+
 import numpy
 from scipy.integrate import solve_ivp
 
@@ -130,6 +132,20 @@ def half_car(times, tolerance=TOLERANCE):
     at = 0.8 + 1j * height + offsets @ numpy.exp(1j * numpy.array(angles))
     return {f"{name}.{axis}": part for name, k in (("body", 0), ("front", 3), ("rear", 4))
             for axis, part in (("x", at[k].real), ("y", at[k].imag))}
+
+
+def double_pendulum(lengths, masses):
+    """Of two thin rods, whatever they weigh: what integrates their angles from the downward vertical, then the rates of these."""
+    (upper, lower), (mass, end) = lengths, masses
+
+    def derivative(_, state):
+        a, b, da, db = state.tolist()  # numbers of Python's own, ten times as fast
+        sine, cosine = upper * lower / 2 * math.sin(a - b), upper * lower / 2 * math.cos(a - b)
+        (p, q), (r, s) = (upper**2 * (mass / 3 + end), end * cosine), (cosine, lower**2 / 3)  # that of the lower rod divided by its mass
+        force = -end * sine * db**2 - GRAVITY * upper * (mass / 2 + end) * math.sin(a)
+        other = sine * da**2 - GRAVITY * lower / 2 * math.sin(b)
+        return [da, db, (s * force - q * other) / (p * s - q * r), (p * other - r * force) / (p * s - q * r)]
+    return derivative
 
 
 def _pull(between, rate, stiffness, damping, free):
