@@ -90,7 +90,7 @@ def reference(subject, runs=()):
         moved = max(float(numpy.max(numpy.abs(first[name] - second[name]))) for name in ("B0.x", "B0.y"))
         return Reference("closed form", moved + ULP * (subject.loops + 1), "rounding")
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
-    name, judged = subject.entry.known, subject.entry.judged
+    name = subject.entry.known
     if name == EXTRAPOLATED:
         known, less = _extrapolated(runs)
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
@@ -100,8 +100,7 @@ def reference(subject, runs=()):
             less, origin = CLOSED[name](times * (1 + ULP)), "rounding"
         else:
             less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
-    known, less = ({column: values for column, values in one.items() if column.split(".")[0] in judged}
-                   for one in (known, less))
+    known, less = ({column: one[column] for column in subject.entry.columns(one)} for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
 
 

@@ -1,5 +1,5 @@
 # Rows of the gate, of the standard problems and their convergence, and of what modelling costs.
-from functools import lru_cache
+from functools import cache
 
 import numpy
 import pandas
@@ -59,14 +59,10 @@ def problem_rows(problem, runs):
             row["error_rms"], row["error_max"] = metric.errors({column: _values(record, column) for column in known}, known)
             row["precision"] = metric.precision(row["error_rms"])
         if status in FINISHED and problem.mirrored:
-            row["asymmetry"] = max(_apart(record, left, right, "x", 1) + _apart(record, left, right, "y", -1)
-                                   for left, right in problem.mirrored)
+            row["asymmetry"] = max(sum(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}")).max()
+                                       for axis, sign in (("x", 1), ("y", -1))) for left, right in problem.mirrored)
         result.append(row)
     return result
-
-
-def _apart(record, left, right, axis, sign):
-    return float(max(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}"))))
 
 
 def _known(problem, runs, name, step):
@@ -74,16 +70,19 @@ def _known(problem, runs, name, step):
     finest two steps of the other one that is compared."""
     if problem.known != EXTRAPOLATED:
         solution = _solution(problem.known, tuple(numpy.round(_values(runs[name, step], "t"), 12)))
-        return {column: values for column, values in solution.items() if column.split(".")[0] in problem.judged}
+        return {column: solution[column] for column in problem.columns(solution)}
     other = next((one for one, _ in runs if one != name and runs[one, problem.steps[0]].role == "compared"), None)
     finer, finest = (runs.get((other, one)) for one in problem.steps[1:])
-    if any(record is None or of_run(record)[0] not in FINISHED for record in (finer, finest)):
+    if not _whole(finer, finest):
         return None
-    return {column: extrapolate(_values(finer, column), _values(finest, column))
-            for column in problem.columns(finest.series)}
+    return {column: extrapolate(_values(finer, column), _values(finest, column)) for column in problem.columns(finest.series)}
 
 
-@lru_cache(maxsize=None)
+def _whole(*records):
+    return all(record and of_run(record)[0] in FINISHED for record in records)
+
+
+@cache
 def _solution(known, times):
     return KNOWN[known](numpy.array(times))
 
@@ -99,7 +98,7 @@ def convergence_rows(problem, runs):
     published = PUBLISHED[problem.published]() if problem.published else {}
     for name in dict.fromkeys(name for (name, _), record in runs.items() if record.role == "compared"):
         three = [runs.get((name, step)) for step in problem.steps]
-        if len(three) != 3 or any(record is None or of_run(record)[0] not in FINISHED for record in three):
+        if len(three) != 3 or not _whole(*three):
             continue
         for column in problem.columns(three[0].series):
             values = [_values(record, column)[-1] for record in three]
@@ -138,12 +137,7 @@ def modelling_rows(records):
         if len(good):
             row |= {"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high}
         if status in GOOD:
-            row["position_error"] = _error(record, loops)
+            exact = four_bar(_values(record, "t"), loops)
+            row["position_error"] = max(abs(_values(record, column) - exact[column]).max() for column in ("B0.x", "B0.y"))
         result.append(row)
     return result
-
-
-def _error(record, loops):
-    """Largest distance of B0 from the exact motion along an axis, m; over all instants that are kept."""
-    exact = four_bar(_values(record, "t"), loops)
-    return max(float(numpy.max(numpy.abs(_values(record, column) - exact[column]))) for column in ("B0.x", "B0.y"))
