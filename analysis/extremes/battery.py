@@ -11,6 +11,7 @@ NOT_RUN = ("unsupported", "refused", "excluded", "dropped", "unavailable")
 KINDS = ("silent", "other", "crashed", "out-of-memory", "timeout", "diverged", "wrong-branch", "not-converged", "degraded", "unjudged", "ok",
          "refused")  # what a row is shown as, the worst first
 REFERENCE = "reference"  # the role of its runs
+FAR = 0.3  # clearance from a change point, beyond which nothing jumps
 
 
 def table(records, registry):
@@ -43,20 +44,18 @@ def table(records, registry):
 
 
 def _row(record, cell, name, setting, limit, solutions, own, truth):
-    status, reason = of_run(record)
+    (status, reason), failed_at = of_run(record), record.output.get("failed_at")
+    beyond = limit + (own or 0.0)
+    error, since = judge.off(record, solutions, cell.length, beyond)
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
-    far = judge.apart(record, solutions, cell.length)
-    error = judge.error_of(record, far)
-    error = error if not reported > error else reported
-    beyond = limit + (own or 0.0)
-    since = judge.wrong_from(record, far, beyond)
-    harmless = judge.harmless(cell, record.output.get("failed_at"))
-    verdict = verdicts.verdict(status, error, beyond, since, harmless) if solutions and record.done and status not in NOT_RUN else ""
+    error = reported if reported > error else error
+    jumps_nowhere = cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR
+    verdict = verdicts.verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
+        solutions and record.done and status not in NOT_RUN) else ""
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
-            "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,
-            "truth_error": own, "allowed": limit, "verdict": verdict, "near": cell.near,
-            "wrong_from": since, "steps": cell.steps, "step": cell.step,
+            "reason": reason, "failed_at": failed_at, "true_error": error, "truth": truth, "truth_error": own, "allowed": limit,
+            "verdict": verdict, "near": cell.near, "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
             "command": _shown(record.command) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
 

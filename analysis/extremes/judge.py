@@ -5,7 +5,6 @@ from analysis.core.outcomes import FINISHED, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
 PLACES = (".x", ".y", ".z")  # what columns of places end in
-FAR = 0.3            # clearance from a change point, beyond which nothing jumps
 STILL = 1e-9         # lengths; what moves less rests
 FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
 
@@ -50,27 +49,14 @@ def allowed(cell, solutions):
     return CLASS * min(1.0, float(way)) if way > STILL else CLASS
 
 
-def apart(record, solutions, length):
-    """Of each motion that is possible, at each instant kept, the largest distance of a point from where it should be, in
-    lengths; [] where nothing is known."""
-    return [distances(record.series, solution, length) for solution in solutions] if record.series.get("t") else []
-
-
-def error_of(record, far):
-    """The largest of a run's distances, `apart`, where several motions are possible from the nearest of them. NaN where it has
-    not all of its motion, or nothing is known."""
-    return min(one.max() for one in far) if far and of_run(record)[0] in WHOLE else float("nan")
-
-
-def wrong_from(record, far, limit):
-    """The first instant kept at which it is off by more than `limit` lengths, s; None if it is at none."""
-    off = ~(numpy.min(far, axis=0) <= limit) if far else numpy.zeros(0, bool)
-    return float(record.series["t"][off.argmax()]) if off.any() else None
-
-
-def harmless(cell, failed_at):
-    """Outcomes that its motion does not deserve at `failed_at`, s: far from its change points it jumps nowhere."""
-    return ("wrong-branch",) if cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR else cell.harmless
+def off(record, solutions, length, limit):
+    """(true error, lengths; the first instant kept at which a run is off by more than `limit` lengths, s, None if it is at none): by the
+    largest distance of a point, from the nearest where several motions are possible. The error is NaN where the run has not all of its
+    motion, or nothing is known."""
+    far = [distances(record.series, solution, length) for solution in solutions] if record.series.get("t") else []
+    late = ~(numpy.min(far, axis=0) <= limit) if far else numpy.zeros(0, bool)
+    return (min(one.max() for one in far) if far and of_run(record)[0] in WHOLE else numpy.nan,
+            float(record.series["t"][late.argmax()]) if late.any() else None)
 
 
 def distances(series, solution, length):
