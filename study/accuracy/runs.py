@@ -63,17 +63,11 @@ class Runs:
         return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
                     keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
-    def look(self, scene, name, step, contenders, dense=False, patience=None):
-        """A short timed process in which the contenders of a point take turns."""
-        more = ("--patience", patience) if patience else ()
-        steps = max(LEAST, self.stretch(scene, step, dense) // LOOK)
-        self._time("look", scene, name, step, contenders, 1, ("--steps", steps, *more))
-
     def quick(self, scene, step, contenders, behind, dense=False):
         """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
         order."""
         for patience in PATIENCE if contenders else ():
-            self.look(scene, "default", step, contenders, dense, patience)
+            self.time("look", scene, "default", step, contenders, dense=dense, more=("--patience", patience))
             rows = self.measured()
             rows = rows[(rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
                         & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us", kind="stable")
@@ -82,12 +76,11 @@ class Runs:
                 return [self.names[name] for name in near]
         return []
 
-    def time(self, role, scene, name, step, contenders, processes, dense=False):
-        """Timed processes in which the contenders of a point take turns; role: "time" or "pair"."""
-        self._time(role, scene, name, step, contenders, processes, ("--steps", self.stretch(scene, step, dense)))
-
-    def _time(self, role, scene, name, step, contenders, processes, more):
-        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, *more)
+    def time(self, role, scene, name, step, contenders, processes=1, dense=False, more=()):
+        """Timed processes in which the contenders of a point take turns; role: "look", which is short, "time" or "pair"."""
+        steps = self.stretch(scene, step, dense)
+        steps = max(LEAST, steps // LOOK) if role == "look" else steps
+        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, "--steps", steps, *more)
         self.records += timing.measure(
             self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
             role=f"{role}/{self.settings[name].file_name}", seconds=60)

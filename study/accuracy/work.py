@@ -98,7 +98,7 @@ def _measure(runs, scene, speed, found):
         for name, step in points:
             contenders = runs.serving(name, speed[layer])
             if contenders:
-                runs.look(scene, name, step, contenders)
+                runs.time("look", scene, name, step, contenders)
     _judge(runs, scene)
     _rounds(runs, scene, runs.lab.settings["processes"][0])
 
