@@ -35,11 +35,7 @@ class Side:
 class Follower:
     """What a point adds: `joined`, (end, length) of each of its links, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
     joined, load = (), None
-
-    @property
-    def links(self):
-        """(name, ends, length) each"""
-        return [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined]
+    links = property(lambda self: [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined])
 
     def lists(self):
         return {}
@@ -157,18 +153,9 @@ class Linkage(Motion):
     truth = property(lambda self: "closed form" if self.driven else "closed form, its time by quadrature")
     accuracy = property(lambda self: 0.0 if self.driven else 1e-7)
     points = property(lambda self: ["B", *(one.name for one in self.followers)])
-
-    @property
-    def links(self):
-        return [("crank", (self.feet[0][0], "B"), self.crank), *(link for one in self.followers for link in one.links)]
-
-    @property
-    def shortest(self):
-        return min(length for _, _, length in self.links)
-
-    @property
-    def columns(self):
-        return tuple(f"{name}.{axis}" for name in self.points for axis in "xy")
+    links = property(lambda self: [("crank", (self.feet[0][0], "B"), self.crank), *(link for one in self.followers for link in one.links)])
+    shortest = property(lambda self: min(length for _, _, length in self.links))
+    columns = property(lambda self: tuple(f"{name}.{axis}" for name in self.points for axis in "xy"))
 
     def at(self, angle):
         """{point: (x, y)} at crank angles."""
@@ -205,7 +192,6 @@ class Linkage(Motion):
         return {"name": name, "position": [x, y], "driven": {"x": {"polynomial": [x, self.carried]}, "y": y}} if self.carried else fixed(name, x, y)
 
     def document(self):
-        """The scene as JSON."""
         at = self.at(numpy.array([self.start + 1j * IMAGINARY]))
         plates = {one.ends: one for one in self.followers if isinstance(one, Plate)}
         lines = {*[self.feet[0][0]] * self.driven, *(one.foot for one in self.followers if isinstance(one, Slider))}

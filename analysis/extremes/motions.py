@@ -1,4 +1,4 @@
-# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it.
+# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it; points and rods of scenes.
 #
 # All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod
 # of mass m turns about its foot: m length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with
@@ -34,12 +34,10 @@ class Motion:
 
 
 def fixed(name, x, y):
-    """A point of a scene."""
     return {"name": name, "position": [x, y], "fixed": True}
 
 
 def rod(name, first, second, mass=1.0, length=1.0):
-    """A rod of a scene."""
     return {"name": name, "between": [first, second], "mass": mass, "length": length}
 
 
@@ -55,20 +53,9 @@ class Chain(Motion):
     rate: float = 1.0           # rad/s, at t = 0, not negative
 
     truth = "exact"
-
-    @property
-    def shortest(self):
-        return self.length
-
-    @property
-    def masses(self):
-        """(of the rods, of the couplers), kg"""
-        return self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops
-
-    @property
-    def feet(self):
-        """x of the ground points, m"""
-        return self.offset + self.length * numpy.arange(self.loops + 1)
+    shortest = property(lambda self: self.length)
+    masses = property(lambda self: (self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops))  # kg
+    feet = property(lambda self: self.offset + self.length * numpy.arange(self.loops + 1))  # x of the ground points, m
 
     @property
     def k(self):

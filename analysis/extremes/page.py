@@ -14,7 +14,6 @@ def context(tables, view):
 
 
 def _battery(table):
-    """None where there is nothing to show."""
     runs, extreme = verdicts.judged(table), battery.extreme(table)
     if table.empty:
         return None
@@ -45,7 +44,6 @@ def nobody(extreme):
 
 
 def left_out(table):
-    """What was not run and why."""
     found = [f"Left out: {', '.join(dict.fromkeys(rows.implementation))} in {', '.join(dict.fromkeys(rows.axis + ' ' + rows.value))} ({reason})."
              for reason, rows in table[table.status == "excluded"].groupby("reason", sort=False)]
     dropped = int((table.status == "dropped").sum())

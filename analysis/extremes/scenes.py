@@ -44,5 +44,4 @@ def shifted_rod(shift):
 
 
 def with_force(newton):
-    """One loop with a force on it."""
     return Chain(1).document() | {"forces": [{"name": "push", "point": "B0", "force": [newton, 0.0]}]}

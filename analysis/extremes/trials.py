@@ -184,7 +184,6 @@ def _long():
 
 
 def _standard():
-    """Standard problems, examples and families at their own steps."""
     for scene, length in EXAMPLES.items():
         yield Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
                       kept=("all",), settings=FORMS, harmless=REGULAR)

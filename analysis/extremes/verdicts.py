@@ -17,12 +17,10 @@ def verdict(status, error, limit, wrong_from, harmless):
 
 
 def judged(table):
-    """The runs that have a verdict."""
     return table[table.verdict.isin(ALL)]
 
 
 def counts(table):
-    """{verdict: runs}"""
     return {verdict: int((table.verdict == verdict).sum()) for verdict in ALL}
 
 
