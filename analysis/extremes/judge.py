@@ -12,8 +12,9 @@ FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the s
 def true_motion(cell, references, times):
     """([solutions], their own error in lengths, what they are), or ([], None, why there is none). `references`:
     {finer: Record} where nothing else knows the motion."""
+    times = numpy.array(times, dtype=float)
     if cell.motion:
-        solutions = cell.motion.solutions(times)
+        solutions = cell.motion.solutions(times) if len(times) else [{}]
         return solutions, rounding(cell, solutions, times), cell.motion.truth
     for factor in FINER:
         status, reason = of_run(references[factor]) if factor in references else ("missing", "it was not run")
@@ -35,7 +36,7 @@ def rounding(cell, solutions, times):
     if not len(times) or cell.motion.accuracy:
         return cell.motion.accuracy / cell.length
     ulp = numpy.finfo(float).eps
-    moved = cell.motion.solutions(numpy.asarray(times) * (1 + ulp))
+    moved = cell.motion.solutions(times * (1 + ulp))
     return max(
         float(distances(late, known, cell.length).max() + ulp * max(abs(values).max() for values in known.values()) / cell.length)
         for late, known in zip(moved, solutions))
@@ -44,9 +45,9 @@ def rounding(cell, solutions, times):
 def allowed(cell, solutions):
     """The largest true error, in lengths, of a run that may be ok. Of a short way it is the same share, as else a run
     that stood still would be right; what is at rest must stay within a hundredth."""
-    way = max((numpy.ptp(values) for solution in solutions for column, values in solution.items()
+    way = max((float(numpy.ptp(values)) for solution in solutions for column, values in solution.items()
                if column.endswith(PLACES) and len(values)), default=0.0) / cell.length
-    return CLASS * min(1.0, float(way)) if way > STILL else CLASS
+    return CLASS * min(1.0, way) if way > STILL else CLASS
 
 
 def off(record, solutions, length, limit):

@@ -166,16 +166,15 @@ class Linkage(Motion):
         return found
 
     def angles(self, times):
-        times = numpy.asarray(times, dtype=float)
-        return self.start + self.rate * times if self.driven or not len(times) else _turned(self, float(numpy.ceil(times[-1])))(times)
+        return self.start + self.rate * times if self.driven else _turned(self, float(numpy.ceil(times[-1])))(times)
 
     def solutions(self, times):
-        at, way = self.at(self.angles(times)), self.carried * numpy.asarray(times, dtype=float)
+        at, way = self.at(self.angles(times)), self.carried * times
         return [{f"{name}.{axis}": at[name][i] + way * (axis == "x") for name in self.points for i, axis in enumerate("xy")}]
 
     def clearance(self, time):
         """From its nearest change point: the least of its points'."""
-        at = self.at(self.angles([time]))
+        at = self.at(self.angles(numpy.array([time])))
         return min((float(numpy.min(one.clearance(at))) for one in self.followers), default=1.0)
 
     def energy(self, angle):

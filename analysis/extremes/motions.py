@@ -18,15 +18,12 @@ POINTS = 6      # of a chain, whose places are kept, at most: all of them up to 
 
 
 class Motion:
-    """A mechanism whose motion is known. `solutions(times)`: the motions that are possible, each {column of a trajectory: values};
+    """A mechanism whose motion is known. `solutions(times)`, at some times: the motions that are possible, each {column of a trajectory: values};
     `document()`: its scene as JSON."""
     loops, shortest = 1, 1.0              # shortest: m, of its links
     truth, accuracy = "closed form", 0.0  # what `solutions` are; their error beside rounding, m
 
-    @property
-    def columns(self):
-        """Of a trajectory: those that judge it."""
-        return tuple(self.solutions([0.0])[0])
+    columns = property(lambda self: tuple(self.solutions(numpy.zeros(1))[0]))  # of a trajectory: those that judge it
 
     def clearance(self, time):
         """How far it is from a change point, where anything may jump; 0 where nobody knows."""
@@ -63,7 +60,7 @@ class Chain(Motion):
         return self.gravity / self.length * (rods / 2 + couplers) / (rods / 3 + couplers)
 
     def solutions(self, times):
-        sine, cosine, _ = turning(numpy.asarray(times, dtype=float), self.k, self.angle, self.rate)
+        sine, cosine, _ = turning(times, self.k, self.angle, self.rate)
         return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
             ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
 

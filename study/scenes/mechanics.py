@@ -23,7 +23,7 @@ def grid(times, size, lean=0.5, tolerance=TOLERANCE):
     def derivative(_, state):
         turned, rates = numpy.exp(1j * state[:size]), state[size:]
         return [*rates, *_accelerations(1j * offsets * turned, masses, masses * (GRAVITY + offsets @ (turned * rates**2)))]
-    at = rows @ numpy.exp(1j * _integrate(derivative, times, [lean] * size + [0] * size, tolerance)[:size])
+    at = rows @ numpy.exp(1j * integrate(derivative, times, [lean] * size + [0] * size, tolerance)[:size])
     return {f"{name}.{axis}": part for name, links in (("corner", size), ("middle", size // 2))
             for axis, part in (("x", links + at[links - 1].imag), ("y", -at[links - 1].real))}
 
@@ -65,7 +65,7 @@ def _slider_crank(times, tolerance, axes, pivot, radius, length, masses, first, 
         angle, rate = state
         _, d, dd = joints(angle)
         return [rate, (torque + numpy.vdot(d, weight) - numpy.vdot(d, mass @ dd) * rate**2) / numpy.vdot(d, mass @ d)]
-    places = numpy.array([joints(angle)[0] for angle in _integrate(derivative, times, start, tolerance)[0]])
+    places = numpy.array([joints(angle)[0] for angle in integrate(derivative, times, start, tolerance)[0]])
     return {f"{name}.{axis}": places[:, i, k] for i, name in enumerate(("crank", "slider")) for k, axis in enumerate(axes)}
 
 
@@ -97,7 +97,7 @@ def governor(times, tolerance=TOLERANCE):
         spin = momentum / inertia
         return [spin, down_rate, (change * spin**2 / 4 + GRAVITY * cos * (arm / 2 + ball) - pull * by_down) / about_hinge,
                 height_rate, -GRAVITY - 2 * pull * by_height / cube]
-    turned, down, _, height, _ = _integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0), tolerance, "LSODA")
+    turned, down, _, height, _ = integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0), tolerance, "LSODA")
     out = hinge + numpy.cos(down)
     return {"slider.x": 0 * height, "slider.y": height, "slider.z": 0 * height,
             "P1.x": out * numpy.cos(turned), "P1.y": top - numpy.sin(down), "P1.z": -out * numpy.sin(turned)}
@@ -128,7 +128,7 @@ def half_car(times, tolerance=TOLERANCE):
         force[hubs] += strut + tyre
         force[mounts] -= strut
         return [*rates, *_accelerations(by, masses, force, inertia)]
-    height, *angles = _integrate(derivative, times, [0.35, 0, numpy.angle(front), numpy.angle(rear), 0, 0, 0, 0], tolerance)[:4]
+    height, *angles = integrate(derivative, times, [0.35, 0, numpy.angle(front), numpy.angle(rear), 0, 0, 0, 0], tolerance)[:4]
     at = 0.8 + 1j * height + offsets @ numpy.exp(1j * numpy.array(angles))
     return {f"{name}.{axis}": part for name, k in (("body", 0), ("front", 3), ("rear", 4))
             for axis, part in (("x", at[k].real), ("y", at[k].imag))}
@@ -155,5 +155,5 @@ def _pull(between, rate, stiffness, damping, free):
     return along * (stiffness * (length - free) + damping * (along.conjugate() * rate).real)
 
 
-def _integrate(derivative, times, start, tolerance, method="DOP853"):
-    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=tolerance, atol=tolerance).y
+def integrate(derivative, times, start, tolerance=TOLERANCE, method="DOP853"):
+    return solve_ivp(derivative, (0, max(times[-1], 1e-9)), start, method, times, rtol=tolerance, atol=tolerance).y
