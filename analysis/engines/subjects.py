@@ -36,33 +36,24 @@ class Subject:
     judged: float = 1e-2  # s: errors are evaluated so often, as the engines' programs do
     steps: tuple = (2e-2, 1e-5)  # s, the longest and the shortest of ours
 
-    @property
-    def place(self):
-        """In tables and figures."""
-        return self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops
+    place = property(lambda self: (self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops))  # in tables and figures
 
     def asks(self, engine):
         """Whether an engine's program models it."""
         return self.name != ANDREWS or engine in SOLVERS
 
-    def engine_error(self, output):
-        """Position error of an engine's run, m."""
+    def error(self, record, engine):
+        """Position error of a run, of an engine's or of ours, m: the largest distance of a point from where it should be."""
+        output, series = record.output, record.series
         if self.loops:
             return output["position_error_max"]
-        places = numpy.array(output["outputs"]["points"], dtype=float)
-        return self.distance(numpy.array(output["outputs"]["t"]),
-                             places.reshape(-1, len(self.points), 2).transpose(1, 2, 0))  # from time, point, axis
-
-    def our_error(self, record):
-        """Position error of a run of ours, m."""
-        if self.loops:
-            return record.output["position_error_max"]
-        places = [[record.series[f"{point}.{axis}"] for axis in "xy"] for point in self.points]
-        return self.distance(numpy.array(record.series["t"], dtype=float), numpy.array(places, dtype=float))
-
-    def distance(self, times, places):
-        """Largest distance of `places` (point, axis, time) from where they should be."""
-        return float(numpy.hypot(*(places - _known(self.name, tuple(times))).swapaxes(0, 1)).max())
+        if engine:
+            times, places = output["outputs"]["t"], numpy.array(output["outputs"]["points"], dtype=float)
+            places = places.reshape(-1, len(self.points), 2).transpose(1, 2, 0)  # from time, point, axis
+        else:
+            times, places = series["t"], [[series[f"{point}.{axis}"] for axis in "xy"] for point in self.points]
+        away = numpy.array(places, dtype=float) - _known(self.name, tuple(times))
+        return float(numpy.hypot(*away.swapaxes(0, 1)).max())
 
 
 OTHERS = {one.name: one for one in (

@@ -4,7 +4,11 @@ import json
 import math
 import random
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+import yaml
+
+from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
@@ -13,7 +17,6 @@ from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.curves import Curve, follow
 from study.core.setting import read_settings
-from study.engines.settings import read_list
 
 SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "engine_settings": int,  # of each engine, the first of settings.yaml
@@ -29,6 +32,38 @@ PAPER = ("default", "paper")  # of ours: the paper's scheme, which is to be foll
 PROGRAMS = "study/engines"                              # in a build
 NATIVE_PROGRAM = "../build-engines/study/engines/engine_ode"  # as seen from the build; study/engines/native makes it
 SET_UP = "study/setup --engines"
+LIST = Path(__file__).with_name("settings.yaml")
+
+
+@dataclass(frozen=True)
+class EngineSetting:
+    """What is passed to an engine's program, and what changes along its curve."""
+    engine: str
+    over: str          # "step" (s) or "accuracy"
+    values: tuple      # of `over`, the coarsest first
+    options: tuple = ()
+
+    def words(self, value):
+        return ("--setting", *(f"{key}={text}" for key, text in (*self.options, (self.over, f"{value:g}"))))
+
+
+def read_list(path=LIST):
+    """{engine: [EngineSetting]}"""
+    listed = yaml.safe_load(path.read_text(encoding="utf-8"))
+    values = {over: tuple(map(float, found)) for over, found in listed["values"].items()}
+    for over, found in values.items():
+        if list(found) != sorted(found, reverse=True):
+            raise StudyError(f"{path}: values of {over}: the coarsest must be the first")
+    found = {engine: [] for engine in listed["engines"]}
+    for engine, settings in found.items():
+        for entry in listed["engines"][engine]:
+            if set(entry) - {"over", "options"} or entry.get("over") not in values:
+                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, "
+                                 "no more")
+            settings.append(EngineSetting(engine, entry["over"], values[entry["over"]], tuple(entry.get("options", {}).items())))
+        if len(set(settings)) < len(settings):
+            raise StudyError(f"{path}: {engine}: settings must differ")
+    return found
 
 
 def columns(settings):
