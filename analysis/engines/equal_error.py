@@ -100,16 +100,10 @@ def _timed(rows, side, timed):
 
 
 def _reached(rows):
-    """(limit, the fastest row that meets it); a row that is the fastest for several is given once, with the smallest
+    """[(limit, the fastest row that meets it)]; a row that is the fastest for several is given once, with the smallest
     limit that it meets."""
-    last = None
-    for limit in LIMITS:
-        best = _fastest(rows, limit)
-        if best is None:
-            return
-        if best.key != last:
-            yield min(one for one in LIMITS if best.error <= one), best
-        last = best.key
+    best = {one.key: one for one in (_fastest(rows, limit) for limit in LIMITS) if one is not None}
+    return [(min(limit for limit in LIMITS if one.error <= limit), one) for one in best.values()]
 
 
 def _fastest(rows, error):

@@ -25,7 +25,6 @@ def draw(tables, view):
 
 
 def one_figure(tables, subjects, own):
-    """The figure of some subjects."""
     if not subjects:
         return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})

@@ -1,6 +1,6 @@
 # What the page says besides its figures: who is late, what the machine loses.
 from analysis.core.outcomes import FINISHED
-from analysis.realtime.verdict import HOPELESS
+from analysis.realtime.tables import HOPELESS
 
 
 def context(tables, view):

@@ -1,13 +1,18 @@
 # Distributions, what judging costs, what the search tried and what it came to, and the losses of null processes, from their records.
+from collections import namedtuple
+
 import pandas
 
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.core.text import number
-from analysis.realtime.verdict import judge, lost, missed
 
 TIMES = ("mean", "median", "p99", "p999", "max")
 END = "end of the search"
+HOPELESS = 0.01  # share of the steps beyond the null process's losses: no interruption explains as many
 LARGE, BOUNDS = 22, {True: 0.02, False: 0.04}  # variables; what judging may cost of a step from there on, and below
+
+# Of a run; why it did not keep its deadline; whether another run of the same would not keep it either.
+Verdict = namedtuple("Verdict", ("kept", "reason", "hopeless"))
 
 
 def build(records, view):
@@ -95,3 +100,36 @@ def _observed(runs, prefix):
 def _counts(values):
     """"1300 and 1300": one a run."""
     return " and ".join(number(value, 6) for value in values)
+
+
+def missed(record):
+    """Steps that took longer than the deadline; None if there is no such count."""
+    return (record.output.get("step_us") or {}).get("deadline_misses")
+
+
+def observed(record):
+    """Seconds that the steps of a run took together."""
+    return 1e-6 * record.output["step_us"]["mean"] * record.output["steps"]
+
+
+def lost(null):
+    """Deadlines that a null process lost: 0 if there was none, or if it did not work."""
+    return null.output["lost"] if null is not None and null.done else 0
+
+
+def needs_null(record):
+    """Whether a null process can matter: a run that is whole and missed nothing needs no excuse."""
+    return of_run(record)[0] in FINISHED and missed(record) > 0
+
+
+def judge(record, null):
+    """The Verdict on a run. `null`: the record of the null process after it, or None."""
+    status, reason = of_run(record)
+    if status not in FINISHED:
+        return Verdict(False, f"{status}: {reason}", True)
+    beyond = missed(record) - lost(null)
+    steps = record.output["steps"]
+    if beyond <= 0:
+        return Verdict(True, "", False)
+    return Verdict(False, f"{missed(record)} of {steps} steps missed, {lost(null)} by the null process",
+                   beyond > HOPELESS * steps)

@@ -2,7 +2,7 @@
 # and the search for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
 
-from analysis.realtime.verdict import judge, needs_null, observed
+from analysis.realtime.tables import judge, needs_null, observed
 from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
