@@ -95,22 +95,20 @@ def _sweeps(records):
     for scene in dict.fromkeys(record.cell["scene"] for record in records):
         mine = [record for record in records if record.cell["scene"] == scene]
         good = [record for record in mine if record.done]
-        lost = next((record for record in mine if not record.done), None)
         known = {"scene": scene, "implementation": mine[0].cell["contenders"][0]}
         if not good:
-            found.append(known | {"status": lost.status, "reason": lost.reason, "record": lost.name})
+            found.append(known | {"status": mine[0].status, "reason": mine[0].reason, "record": mine[0].name})
             continue
         lanes = good[0].output["lanes"]
-        processes = [{row["jobs"]: row for row in record.output["rows"]} for record in good]
-        merge = lanes / median([row["merge_s"] for process in processes for row in process.values()])
-        for jobs in processes[0]:
-            rates = [lanes / process[jobs]["wall_s"] for process in processes]
-            rate = median(rates)
+        rows = pandas.DataFrame([row | {"process": process} for process, record in enumerate(good) for row in record.output["rows"]])
+        rows = rows.join(rows[rows.jobs == 1].set_index("process")[["wall_s", "cpu_s"]], on="process", rsuffix="_alone")
+        merge = lanes / rows.merge_s.median()
+        for jobs, each in rows.groupby("jobs", sort=False):
+            rates = lanes / each.wall_s
+            rate = rates.median()
             found.append(known | {
-                "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate,
-                "least": min(rates), "most": max(rates), "lane_us": 1e6 / lanes * median([process[jobs]["cpu_s"] for process in processes]),
-                "gain": median([process[1]["wall_s"] / process[jobs]["wall_s"] for process in processes]),
-                "work": median([process[jobs]["cpu_s"] / process[1]["cpu_s"] for process in processes]),
-                "memory_mb": max(process[jobs]["memory_mb"] for process in processes), "merged_per_s": merge,
+                "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate, "least": rates.min(),
+                "most": rates.max(), "lane_us": 1e6 / lanes * each.cpu_s.median(), "gain": (each.wall_s_alone / each.wall_s).median(),
+                "work": (each.cpu_s / each.cpu_s_alone).median(), "memory_mb": each.memory_mb.max(), "merged_per_s": merge,
                 "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name})
     return found

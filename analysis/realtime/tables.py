@@ -32,13 +32,11 @@ def build(records, view):
 
 
 def _run(record, null):
-    words, (status, reason) = record.options, of_run(record)
-    times = record.output.get("step_us") or {}
+    words, output, (status, reason) = record.options, record.output, of_run(record)
     row = {"implementation": record.cell["contenders"][0], "scheme": words["scheme"], "step": float(words["step"]),
-           "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status,
-           "reason": reason, "steps": record.output.get("steps"), "missed": missed(record),
-           "judge_us": record.output.get("judge_us"), "record": record.name} | {
-           f"{key}_us": times.get(key) for key in TIMES}
+           "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status, "reason": reason,
+           "steps": output.get("steps"), "missed": missed(record), "judge_us": output.get("judge_us"), "record": record.name} | {
+           f"{key}_us": (output.get("step_us") or {}).get(key) for key in TIMES}
     if status == "dropped":
         return row
     verdict = judge(record, null)
@@ -105,11 +103,6 @@ def _counts(values):
 def missed(record):
     """Steps that took longer than the deadline; None if there is no such count."""
     return (record.output.get("step_us") or {}).get("deadline_misses")
-
-
-def observed(record):
-    """Seconds that the steps of a run took together."""
-    return 1e-6 * record.output["step_us"]["mean"] * record.output["steps"]
 
 
 def lost(null):

@@ -2,7 +2,7 @@
 # and the search for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
 
-from analysis.realtime.tables import judge, needs_null, observed
+from analysis.realtime.tables import judge, needs_null
 from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
@@ -93,7 +93,8 @@ class Probe:
 
     def null(self, place):
         """After the run of a place, for as long as its steps took."""
-        return null(self.lab, self.case.step, observed(self.runs[place]), self.runs[place].name)
+        run = self.runs[place]
+        return null(self.lab, self.case.step, 1e-6 * run.output["step_us"]["mean"] * run.output["steps"], run.name)
 
     def _verdict(self, place, number):
         cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)
