@@ -34,11 +34,8 @@ class Side:
 
 class Follower:
     """What a point adds: `joined`, (end, length) of each of its links, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
-    joined, load = (), None
+    joined, load, lists = (), None, {}
     links = property(lambda self: [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined])
-
-    def lists(self):
-        return {}
 
     def clearance(self, at):
         """How far it is from its change point: for instance the sine of the angle between two links."""
@@ -78,6 +75,8 @@ class Slider(Follower):
 
     load = property(lambda self: self.name)
     joined = property(lambda self: [(self.end, self.length)])
+    lists = property(lambda self: {"masses": [{"point": self.name, "mass": 1.0}], "constraints": [
+        {"name": "slides", "type": "on_line", "point": self.name, "line": [self.foot, f"{self.foot}x"]}]})
 
     def place(self, at, angle):
         (x, y), level = at[self.end], at[self.foot][1]
@@ -85,10 +84,6 @@ class Slider(Follower):
 
     def clearance(self, at):
         return abs(at[self.name][0] - at[self.end][0]) / self.length
-
-    def lists(self):
-        return {"masses": [{"point": self.name, "mass": 1.0}],
-                "constraints": [{"name": "slides", "type": "on_line", "point": self.name, "line": [self.foot, f"{self.foot}x"]}]}
 
 
 @dataclass(frozen=True)
@@ -100,15 +95,14 @@ class Swing(Follower):
     length: float
 
     joined = property(lambda self: [(self.foot, self.length)])
+    lists = property(lambda self: {"constraints": [
+        {"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]})
 
     def place(self, at, angle):
         return at[self.foot] + self.length * _unit(at[self.through] - at[self.foot])
 
     def clearance(self, at):
         return numpy.hypot(*(at[self.through] - at[self.foot])) / self.length
-
-    def lists(self):
-        return {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]}
 
 
 @dataclass(frozen=True)
@@ -131,11 +125,11 @@ class Wheel(Follower):
     load: str
     radius: float = 0.3
 
+    lists = property(lambda self: {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2,
+                                               "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]})
+
     def place(self, at, angle):
         return at[self.load] + numpy.array([[self.radius], [0.0]])
-
-    def lists(self):
-        return {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2, "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]}
 
 
 @dataclass(frozen=True)
@@ -206,7 +200,7 @@ class Linkage(Motion):
             else:
                 found["rods"].append(rod(name, *ends, length=length))
         for one in self.followers:
-            for key, more in one.lists().items():
+            for key, more in one.lists.items():
                 found[key] += more
         if self.driven:
             foot = self.feet[0][0]
