@@ -33,9 +33,7 @@ class Subject:
     loops: int | None = None
     entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
 
-    @property
-    def unit(self):
-        return "m" if self.loops else "relative"
+    unit = property(lambda self: "m" if self.loops else "relative")
 
     @property
     def base(self):
@@ -64,8 +62,7 @@ def problem(name):
     entry = next((one for one in read_list()[1] if one.name == name and not one.scene.startswith("four-bar:")), None)
     if entry is None:
         raise StudyError(f"accuracy: columns: '{name}' is no standard problem of its own scene (study/scenes/problems.yaml)")
-    return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND),
-                   entry=entry)
+    return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND), entry=entry)
 
 
 def of(kind, entry, settings):
@@ -87,7 +84,7 @@ def reference(subject, runs=()):
     if subject.loops:
         times = numpy.linspace(0, subject.duration, 401)
         first, second = (four_bar(at, subject.loops) for at in (times * (1 + ULP), times))
-        moved = max(float(numpy.max(numpy.abs(first[name] - second[name]))) for name in ("B0.x", "B0.y"))
+        moved = max(float(abs(first[name] - second[name]).max()) for name in ("B0.x", "B0.y"))
         return Reference("closed form", moved + ULP * (subject.loops + 1), "rounding")
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
     name = subject.entry.known
@@ -109,9 +106,8 @@ def _extrapolated(runs):
     lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
     if lost or len(runs) < 3:
         raise StudyError(": ".join(lost) if lost else "its runs were not made")
-    motions = [{column: numpy.array(values) for column, values in one.series.items() if column != "t"} for one in runs]
-    coarse, fine = ({column: extrapolate(first[column], second[column]) for column in first}
-                    for first, second in zip(motions, motions[1:]))
+    coarse, fine = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
+                    for both in zip(runs, runs[1:]))
     return fine, coarse
 
 

@@ -26,9 +26,7 @@ class Case:
     steps: int = STRETCH   # of the stretch; and of the run, where that is the early one
     base: str = PLAIN      # the case that it is compared with
 
-    @property
-    def file_name(self):
-        return slug(self.name)
+    file_name = property(lambda self: slug(self.name))
 
 
 BEFORE = "plain, before singular"

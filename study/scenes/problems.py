@@ -29,9 +29,7 @@ class Problem:
     everyone: bool = False
     published: str | None = None
 
-    @property
-    def settings(self):
-        return ("--penalty", f"{self.penalty}", "--tolerance", f"{self.tolerance}", "--max-passes", f"{self.max_passes}")
+    settings = property(lambda self: ("--penalty", f"{self.penalty}", "--tolerance", f"{self.tolerance}", "--max-passes", f"{self.max_passes}"))
 
     def columns(self, outputs):
         """The columns of the judged outputs, in the order of the file."""
