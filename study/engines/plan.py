@@ -26,7 +26,7 @@ SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "rounds": int}
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
-REPEATS = 5          # of such a run in one process; the least time of each of its pieces counts
+REPEATS = 5          # of such a run in one process, theirs as ours; the least time of each of its pieces counts
 SEED = 20080101
 PAPER = ("default", "paper")  # of ours: the paper's scheme, which is to be followed however far from others it is
 PROGRAMS = "study/engines"                              # in a build
@@ -54,14 +54,14 @@ def read_list(path=LIST):
     for over, found in values.items():
         if list(found) != sorted(found, reverse=True):
             raise StudyError(f"{path}: values of {over}: the coarsest must be the first")
-    found = {engine: [] for engine in listed["engines"]}
-    for engine, settings in found.items():
-        for entry in listed["engines"][engine]:
+    found = {}
+    for engine, entries in listed["engines"].items():
+        for entry in entries:
             if set(entry) - {"over", "options"} or entry.get("over") not in values:
                 raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, "
                                  "no more")
-            settings.append(EngineSetting(engine, entry["over"], values[entry["over"]], tuple(entry.get("options", {}).items())))
-        if len(set(settings)) < len(settings):
+        found[engine] = [EngineSetting(engine, one["over"], values[one["over"]], tuple(one.get("options", {}).items())) for one in entries]
+        if len(set(found[engine])) < len(entries):
             raise StudyError(f"{path}: {engine}: settings must differ")
     return found
 
@@ -151,14 +151,11 @@ class Bench:
     def rounds(self, engines, ours):
         """What may be the fastest at some error, theirs and ours in turn, in an order that is new in every round."""
         theirs, mine = candidates(engines, ours, self.lab.registry.own)
-        cells = [self._alone(one) for one in [*theirs.to_dict("records"), *mine.to_dict("records")]]
+        cells = []
+        for one in [*theirs.to_dict("records"), *mine.to_dict("records")]:
+            often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
+            cells.append(replace(one["cell"], settings=(*one["cell"].settings, *often), role=ROUND, timed=True, keep=(), every=0))
         for number in range(1, self.lab.settings["rounds"] + 1):
             order = random.Random(f"{SEED}:{self.subject.name}:{number}").sample(cells, len(cells))
             self.lab.tell(f"round {number} of {self.lab.settings['rounds']}")
             self.lab.run([replace(cell, number=number) for cell in order], drop=True)
-
-    def _alone(self, one):
-        """The timed cell of a row; a short run is repeated in its process, theirs as ours."""
-        cell = one["cell"]
-        often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
-        return replace(cell, settings=(*cell.settings, *often), role=ROUND, timed=True, keep=(), every=0)

@@ -1,6 +1,7 @@
 # Steps against the deadline that real time sets them, their own length: distributions of their times, what judging them costs,
 # and the search for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
+from functools import cache
 
 from analysis.realtime.tables import judge, needs_null
 from study.core.cell import Cell, Contender
@@ -108,12 +109,7 @@ def search(probe, count):
     """The last place below `count` that `probe` says is "kept", -1 if none is, None where it gives up. Upwards in
     jumps, then by bisection. A place that is "unsure", since one of its two runs failed, may have been interrupted: the
     search goes on above it, but it is no answer."""
-    low, high, known = -1, count, {}
-
-    def ask(place):
-        if place not in known:
-            known[place] = probe(place)
-        return known[place]
+    low, high, ask = -1, count, cache(probe)
     while high - low > 1:
         at = (low + high) // 2 if high < count else min(low + JUMP, count - 1)
         answer = ask(at)
@@ -121,7 +117,7 @@ def search(probe, count):
             return None
         low, high = (low, at) if answer == "failed" else (at, high)
     while low >= 0 and ask(low) != "kept":
-        if known[low] is None:
+        if ask(low) is None:
             return None
         low -= 1
     return low
