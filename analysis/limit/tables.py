@@ -44,12 +44,9 @@ def _leads(timed, cells, registry):
     """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
     rival = rival_of(timed, cells, registry)
     for name in (name for name in registry.variants if name in registry.own and name in cells):
-        cell = cells[name]
-        row = {"implementation": name, "rival": rival, "status": cell["status"],
-               "reason": cell["reason"], "record": cell["record"]}
+        row = {"implementation": name, "rival": rival} | {key: cells[name][key] for key in ("status", "reason", "record")}
         if not agreed(cells, [name]):
-            why = {"status": "dropped", "reason": "the gate was not asked, as the budget was spent"}
-            yield row | (why if cell["status"] == "ok" else {})
+            yield row | ({"status": "dropped", "reason": "the gate was not asked, as the budget was spent"} if row["status"] == "ok" else {})
         elif rival is None:
             yield row | {"status": "dropped", "reason": "no library was timed that the gate agrees with"}
         else:
@@ -59,15 +56,11 @@ def _leads(timed, cells, registry):
 
 def _batches(records):
     """A row for each scene, number of sets and implementation."""
-    rows = pandas.DataFrame([row for record in records for row in _batch(record)])
-    if rows.empty:
-        return []
-    found = []
-    for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False):
+    rows, found = pandas.DataFrame([row for record in records for row in _batch(record)]), []
+    for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False) if len(rows) else ():
         good, lost = group[group.status == "ok"], group[~group.status.isin(["ok", "dropped"])]
         first = lost.iloc[0] if len(lost) else group.iloc[0]
-        row = {"scene": scene, "sets": sets, "implementation": name, "status": first.status, "reason": first.reason,
-               "record": first.record}
+        row = {"scene": scene, "sets": sets, "implementation": name} | first[["status", "reason", "record"]].to_dict()
         if len(good) and lost.empty:
             sides = pandas.concat([good.assign(implementation=side, samples=[(time,) for time in good[f"{side}_us"]])
                                    for side in ("alone", "step")])
