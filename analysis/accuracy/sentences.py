@@ -41,17 +41,10 @@ def own_fill(winners):
     return winners[winners.loops.notna() & winners.fill_asked.isna()]
 
 
-def most(values):
-    """(the most frequent, how often)"""
-    counts = values.value_counts()
-    return counts.index[0], int(counts.iloc[0])
-
-
 def of_layer(rows, layer):
     """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
-    who, often = most(rows.implementation)
-    setting, with_it = most(rows.setting)
-    settled = int((rows.settled == True).sum())  # noqa: E712 (a nullable flag)
+    (who, often), (setting, with_it) = (next(iter(names.value_counts().items())) for names in (rows.implementation, rows.setting))
+    settled = int(rows.settled.sum())
     text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
             f"{settled} of these are settled. The best setting is most often {setting}, in {with_it}.")
     largest = rows[rows.variables == rows.variables.max()].sort_values("required")
@@ -70,9 +63,8 @@ def summary(winners):
         for layer in LAYERS:
             groups = {}
             for one in rows[rows.layer == layer].sort_values("variables").itertuples():
-                words = f"{one.implementation}, {one.setting}" + ("" if one.settled else " (open)") if one.setting else (
-                    one.implementation)
-                groups.setdefault(words, []).append(f"{one.variables:.0f}")
+                words = f", {one.setting}{'' if one.settled else ' (open)'}" if one.setting else ""
+                groups.setdefault(one.implementation + words, []).append(f"{one.variables:.0f}")
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
         found.append(row)
     return found
