@@ -1,4 +1,7 @@
 # What a column of accuracy runs: motions of a subject (untimed), and points of these in timed processes.
+from contextlib import suppress
+from dataclasses import replace
+
 from analysis.accuracy import points, subjects
 from analysis.core.errors import StudyError
 from analysis.core.registry import ANCHOR
@@ -38,30 +41,24 @@ class Runs:
     def refer(self):
         """Makes the reference; what is extrapolated is simulated by one contender, the same in every study."""
         one = self.lab.contender(ANCHOR) or next(iter(self.lab.contenders), None)
-        finest = self.subject.steps[-1]
-        cells = [self._cell(one, "default", finest / divisor, self.subject.scene, "reference", seconds=300)
+        cells = [replace(self.run_cell(one, "default", self.subject.steps[-1] / divisor), role="reference", seconds=300)
                  for divisor in (1, 2, 4) if self.subject.entry and self.subject.entry.known == "extrapolated"]
-        try:
+        with suppress(StudyError):  # said in references.csv: no error is known, nobody is timed
             self.known = subjects.reference(self.subject, self.lab.run(cells))
-        except StudyError:  # said in references.csv: no error is known, nobody is timed
-            self.known = None
 
     def simulate(self, jobs):
         """Runs of (contender, setting, step, scene, duration), on all cores, as long as the budget lasts."""
         self.records += self.lab.run([self.run_cell(*job) for job in jobs], drop=True)
 
     def run_cell(self, one, name, step, scene=None, duration=None):
-        return self._cell(one, name, step, scene or self.subject.scene, f"run/{self.settings[name].file_name}", duration)
+        words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
+        return Cell("simulate", scene or self.subject.scene, (one,), words, f"run/{self.settings[name].file_name}",
+                    seconds=CAREFUL * (1 + self.longest), keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
     def row(self, record):
         """What a run came to; its record is kept."""
         self.records.append(record)
         return points.runs([record], self.subject, self.known).to_dict("records")[0]
-
-    def _cell(self, one, name, step, scene, role, duration=None, seconds=None):
-        words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
-        return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
-                    keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
     def quick(self, scene, step, contenders, behind, dense=False):
         """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
