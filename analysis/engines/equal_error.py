@@ -5,7 +5,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.outcomes import finished
-from analysis.engines.runs import ENGINE, NATIVE, OURS, key
+from analysis.engines.runs import NATIVE
 
 LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, where noise would decide who meets one
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
@@ -59,8 +59,8 @@ def table(engines, ours, rounds, own):
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
         mine, paired = ours[ours.subject == subject], timing.Paired(timed)
-        sides = {side: (every, _timed(every, OURS, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
-        for name, of_engine in _timed(theirs, ENGINE, timed).groupby("name", sort=False):
+        sides = {side: (every, _timed(every, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
+        for name, of_engine in _timed(theirs, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():
                     rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired))
@@ -72,31 +72,27 @@ def native(engines, rounds):
     found = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
-        done, paired = _timed(theirs, ENGINE, timed), timing.Paired(timed)
+        done, paired = _timed(theirs, timed), timing.Paired(timed)
         for row in done[done.name.str.endswith(NATIVE)].to_dict("records"):
-            generic = row | {"name": row["name"].removesuffix(NATIVE)}
-            ratio = timing.ratio(paired, key(generic), row["key"])
+            ratio = timing.ratio(paired, row["key"].replace(NATIVE, ""), row["key"])
             if ratio.value == ratio.value:
-                found.append({"subject": subject, "engine": generic["name"], "setting": row["setting"], "over": row["over"],
-                              "value": row["value"], "native_time": row["time"], "ratio": ratio.value, "low": ratio.low,
-                              "high": ratio.high, "record": row["record"]})
+                found.append({name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
+                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high})
     return pandas.DataFrame(found)
 
 
 def samples(rounds):
     """Rows as analysis/core/timing.py has them, a process a round. Who failed in one round has failed."""
-    rows = rounds.assign(implementation=[key(row) for row in rounds.to_dict("records")], process=rounds["round"], error=0.0)
+    rows = rounds.assign(implementation=rounds.key, process=rounds["round"], error=0.0)
     done = finished(rows)
     failed = rows.implementation[~rows.index.isin(done.index) & (rows.status != "dropped")]
     return timing.apart(done[~done.implementation.isin(failed)].assign(status="ok"), "time")
 
 
-def _timed(rows, side, timed):
+def _timed(rows, timed):
     """Finished rows that were timed in the rounds, with the median of these times."""
-    done, medians = finished(rows), timed.groupby("implementation").time.median()
-    done = done.assign(key=pandas.Series([key(row | {"side": side}) for row in done.to_dict("records")], done.index, dtype=object))
-    done = done[done.key.isin(medians.index)]
-    return done.assign(time=done.key.map(medians).astype(float))
+    times = rows.key.map(timed.groupby("implementation").time.median()).astype(float)
+    return finished(rows.assign(time=times.where(rows.time.notna())))
 
 
 def _reached(rows):
@@ -129,8 +125,7 @@ def unreached(rows, error):
         return "none of it takes part"
     done = finished(rows)
     if done.empty:
-        counts = rows.status.value_counts()
-        return "lost: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+        return "lost: " + ", ".join(f"{count} {status}" for status, count in rows.status.value_counts().items())
     if (done.error <= error).any():
         return "not timed in the rounds"
     return f"its smallest error is {done.error.min():.2g} m"

@@ -11,16 +11,17 @@ NATIVE = "+native"                               # of an engine that was built w
 
 
 def row(record):
-    """`name`: the engine or implementation; `time`: s of computation for a simulated second; `error`: NaN in rounds."""
+    """`name`: the engine or implementation; `time`: s of computation for a simulated second; `error`: NaN in rounds; `key`: what a run has
+    in common with its repetition there."""
     subject, (status, reason) = subject_of(record.column), of_run(record)
     engine = PurePath(record.cell["program"]).name.startswith("engine_")
     error = subject.error(record, engine) if status in FINISHED and record.role != ROUND else None
     error = math.nan if error is None else max(error, FLOOR)
     if status in FINISHED and record.role != ROUND and not math.isfinite(error):
         status, reason = "diverged", "its position error is not finite"
-    return (_engine if engine else _ours)(record) | {
-        "subject": subject.name, "status": status, "reason": reason, "error": error, "round": record.cell["number"],
-        "side": ENGINE if engine else OURS, "record": record.name}
+    found, side = (_engine if engine else _ours)(record), ENGINE if engine else OURS
+    return found | {"subject": subject.name, "status": status, "reason": reason, "error": error, "round": record.cell["number"], "side": side,
+                    "key": "|".join([side, *(f"{found[name]}" for name in ("name", "setting", "over", "value"))]), "record": record.name}
 
 
 def _engine(record):
@@ -41,8 +42,3 @@ def _ours(record):
     return {"name": record.cell["contenders"][0], "over": "step", "value": step,
             "setting": ", ".join([scheme, *(f"{key} {value}".strip() for key, value in options.items())]),
             "time": 1e-6 * times["mean"] * output["steps"] / output["duration"] if times else None}
-
-
-def key(one):
-    """What a run has in common with its repetition in the rounds; `one`: a row."""
-    return f"{one['side']}|{one['name']}|{one['setting']}|{one['over']}|{one['value']:g}"
