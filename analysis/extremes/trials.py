@@ -105,9 +105,8 @@ def all_trials():
 
 def few(trials, standard, others):
     """[(trial, setting)]: first `standard` of the standard problems' runs, then a sample of `others` of the others; all with 0."""
-    runs = [(trial, setting) for trial in trials for setting in trial.settings]
-    known = [run for run in runs if run[0].axis in STANDARD]
-    rest = [run for run in runs if run[0].axis not in STANDARD]
+    known, rest = ([(trial, setting) for trial in trials if (trial.axis in STANDARD) == those for setting in trial.settings]
+                   for those in (True, False))
     return known[:standard or None] + (random.Random(1).sample(rest, min(others, len(rest))) if others else rest)
 
 
