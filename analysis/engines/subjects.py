@@ -71,10 +71,8 @@ def subject_of(name):
                    REGULAR_S if regular else DURATION_S, ("--loops", loops), regular, loops)
 
 
-@functools.cache
-def _known(name, times):
-    """Where the points of a subject should be; most runs are judged at the same times."""
-    return (andrews.positions if name == ANDREWS else positions)(numpy.array(times))
+# Where the points of a subject should be; most runs are judged at the same times.
+_known = functools.cache(lambda name, times: (andrews.positions if name == ANDREWS else positions)(numpy.array(times)))
 
 
 def positions(times, longest=LONGEST):

@@ -23,13 +23,14 @@ def table(records, registry):
     roles, names = list(settings), list(registry.variants)
     references, truths, runs, rows = {}, {}, [], []
     for record in records:
-        key = scene, step = judge.scene_of(record), f"{record.option('--step'):g}"
+        scene, step = record.cell["scene"], f"{record.option('--step'):g}"
+        scene = scene if scene.startswith("harness/") else scene.rpartition("/")[2].removesuffix(".json")  # that, or a file of the set's own
         if record.role == REFERENCE and scene in alone:
             references.setdefault(scene, {})[round(alone[scene].step / float(step))] = record
-        elif record.role not in settings or key not in known:
+        elif record.role not in settings or (scene, step) not in known:
             raise StudyError(f"{record.name}: its cell is none of the battery: the set is of another state of it")
         else:
-            runs.append((known[key], roles.index(record.role), names.index(record.cell["contenders"][0]), record))
+            runs.append((known[scene, step], roles.index(record.role), names.index(record.cell["contenders"][0]), record))
     for place, _, _, record in sorted(runs, key=lambda one: one[:3]):
         cell, times = every[place], record.series.get("t", [])
         same = place, len(times)  # all runs of a cell are judged at the same times

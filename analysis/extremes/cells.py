@@ -114,7 +114,8 @@ def _of_chains():
 
 def _constraints():
     for stiffness in (1e6, 1e8, 1e10, 1e12):
-        yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness))
+        spring = {"name": "spring", "between": ["B0", "B1"], "stiffness": stiffness, "length": 1.0}  # beside a coupler, at its free length
+        yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), Chain(2).document() | {"springs": [spring]})
         yield Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None, scenes.sprung_pendulum(stiffness), steps=800,
                       kept=("B.x", "B.y", "C.x", "C.y"))
     yield Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True))
@@ -135,6 +136,7 @@ def _starts():
     tiny, short = 1e-310, 1e-160  # denormal numbers
     yield _chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,)))
     yield _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny)))
-    yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny))
+    yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), Chain(1).document() | {
+        "forces": [{"name": "push", "point": "B0", "force": [tiny, 0.0]}]})
     yield _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny))
     yield _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5), step=STEP * short**0.5)

@@ -68,9 +68,3 @@ def distances(series, solution, length):
             point = column.rpartition(".")[0]
             found[point] = found.get(point, 0) + ((numpy.array(series[column], dtype=float) - solution[column]) / length)**2
     return numpy.sqrt(numpy.max(list(found.values()), axis=0))
-
-
-def scene_of(record):
-    """What its cell is named by: a scene of the repository, or a file of the set's own."""
-    scene = record.cell["scene"]
-    return scene if scene.startswith("harness/") else scene.rpartition("/")[2].removesuffix(".json")

@@ -24,7 +24,9 @@ def battery(lab):
     rest = [cell for cell in extreme if cell.place is None and not lab.settings["cells"]]
     tried = list(dict.fromkeys(cell for cell, _ in chosen))
     scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in tried + telling + rest}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor, *who) for some, who in ((tried, (turns[-1], "mbs")), (telling + rest, ()))
+    lab.run([Cell("simulate", scenes[cell.name], (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
+                  table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns, every=cell.every * factor)
+             for some, one, program in ((tried, turns[-1], "mbs"), (telling + rest, REFERENCE, "mbs_reference"))
              for cell in some if cell.motion is None for factor in judge.FINER])
     todo = []
     for place, (cell, setting) in enumerate(chosen):
@@ -55,12 +57,6 @@ def _run(lab, cell, scene, setting, who, most=None):
         else:
             lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
     return found
-
-
-def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference"):
-    return Cell("simulate", scene, (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
-                table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns,
-                every=cell.every * factor)
 
 
 def pivots(lab):
