@@ -46,8 +46,7 @@ def runs(records, subject, known):
 
 def timed(records):
     """A row for each contender of each process of timed cells ("look/SETTING", "time/SETTING", "pair/SETTING")."""
-    chosen = {record.name: record for record in timing.counted(
-        [one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
+    chosen = {record.name: record for record in timing.counted([one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
     found = timing.processes(chosen.values())
     of = [chosen[one] for one in found.record]
     return found.assign(

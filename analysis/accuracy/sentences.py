@@ -14,8 +14,7 @@ def answers(tables, view):
         dropped = (asked.implementation == NOT_TIMED).any()
         return [{"text": "Not measured: " + ("the budget ended before those that may be the fastest were timed." if dropped else
                                              "nobody reached a required error with a time."), "anchor": ""}]
-    found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"}
-             for layer in LAYERS if (won.layer == layer).any()]
+    found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"} for layer in LAYERS if (won.layer == layer).any()]
     return found + [{"text": text, "anchor": anchor} for anchor, of in (("precision", of_precision), ("reuse", of_reuse))
                     for text in of(tables["pairs"])[:1]]
 
@@ -75,8 +74,7 @@ def of_forms(table):
     if rows.empty:
         return []
     least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
-    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty "
-            "form."]
+    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
     per_pass = ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()
     if len(per_pass):
         said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
@@ -109,8 +107,7 @@ def of_precision(table):
 
 def reuse_rows(table):
     """For each setting that reuses factors: medians over implementations, size by size."""
-    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna()
-                 & table.second_factorizations.notna()]
+    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna() & table.second_factorizations.notna()]
     rows = rows.assign(saved=1 - rows.second_factorizations / rows.first_factorizations)
     found = rows.groupby(["variables", "first", "second"], sort=False).agg(
         implementations=("implementation", "nunique"), saved=("saved", "median"),

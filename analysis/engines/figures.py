@@ -10,8 +10,7 @@ from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import subject_of
 
 COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7", "dart": "#56B4E9", "ida": "#B8860B"}
-NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART",
-         "ida": "SUNDIALS IDA"}
+NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART", "ida": "SUNDIALS IDA"}
 LINES = {"chains": {"color": "black", "linewidth": 2.2}, "fronts": {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 1.5))},
          "library": {"color": "#5B3A9E", "linewidth": 1.8}, "paper": {"color": "#8A8A00", "linewidth": 1.4, "linestyle": (0, (1, 1))}}
 HEADROOM = 0.16  # share of the height that runs which lost the motion have for themselves
@@ -48,8 +47,7 @@ def _panel(axes, engines, ours, own):
     for engine, rows in engines[~engines.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
         place, (colour, marker) = place_of(engine), look(engine)
         done = finished(rows)
-        axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3,
-                  markeredgewidth=0)
+        axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3, markeredgewidth=0)
         front = rows.loc[pareto(rows)]
         axes.plot(front.time, front.error, color=colour, marker=marker, markersize=5.5, linewidth=1.6,
                   markeredgecolor="white", markeredgewidth=0.6)

@@ -34,5 +34,4 @@ def summary(rows, engines):
 def unreached(table):
     """[(side, subject, reason, errors)] of what ours does not reach, by what is the matter."""
     rows = table[table.ratio.isna() & (table.reason != "none of it takes part")]
-    return [(*key, sorted(set(errors), reverse=True)) for key, errors in
-            rows.groupby(["side", "subject", "reason"], sort=False).engine_error]
+    return [(*key, sorted(set(errors), reverse=True)) for key, errors in rows.groupby(["side", "subject", "reason"], sort=False).engine_error]

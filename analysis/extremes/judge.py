@@ -20,8 +20,7 @@ def true_motion(cell, references, times):
         status, reason = of_run(references[factor]) if factor in references else ("missing", "it was not run")
         if status not in FINISHED:
             return [], None, f"none: the reference is {status}: {reason}"
-    fine, finest = ({column: values[:len(times)] for column, values in references[factor].series.items()}
-                    for factor in FINER)
+    fine, finest = ({column: values[:len(times)] for column, values in references[factor].series.items()} for factor in FINER)
     solution = {column: values for column, values in finest.items() if column != "t"}
     # The error of the finer one of two runs of second order is a third of their difference.
     own = float(distances(fine, solution, cell.length).max()) / 3 if len(times) else 0.0

@@ -95,8 +95,7 @@ class Swing(Follower):
     length: float
 
     joined = property(lambda self: [(self.foot, self.length)])
-    lists = property(lambda self: {"constraints": [
-        {"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]})
+    lists = property(lambda self: {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]})
 
     def place(self, at, angle):
         return at[self.foot] + self.length * _unit(at[self.through] - at[self.foot])

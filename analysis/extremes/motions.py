@@ -89,6 +89,5 @@ class Flat(Chain):
     def solutions(self, times):
         lone = Chain(1, self.length, self.gravity, self.rods, (1e-300,), angle=self.angle, rate=0.0)
         [swing] = lone.solutions(times)
-        still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times),
-                 "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
+        still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times), "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]

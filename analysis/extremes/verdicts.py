@@ -33,8 +33,7 @@ def by_setting(table):
     """{setting: (right runs, runs)} where more than the two forms was tried, of those who tried more; the best first."""
     runs = judged(table)
     more = runs[~runs.setting.isin([form.name for form in FORMS])][["axis", "value", "implementation"]].drop_duplicates()
-    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows))
-             for name, rows in runs.merge(more).groupby("setting", sort=False)}
+    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows)) for name, rows in runs.merge(more).groupby("setting", sort=False)}
     return dict(sorted(found.items(), key=lambda one: -one[1][0] / one[1][1]))
 
 

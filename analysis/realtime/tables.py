@@ -18,8 +18,7 @@ Verdict = namedtuple("Verdict", ("kept", "reason", "hopeless"))
 def build(records, view):
     nulls = {one.options["after"]: one for one in records if one.role == "null"}  # by the run that each came after
     order = {name: place for place, name in enumerate(view.registry.variants)}
-    found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
-             for role in ("steps", "search")}
+    found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role]) for role in ("steps", "search")}
     found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
                                      key=lambda column: column.map(order) if column.name == "implementation" else column)
              if len(table) else table for role, table in found.items()}
@@ -124,5 +123,4 @@ def judge(record, null):
     steps = record.output["steps"]
     if beyond <= 0:
         return Verdict(True, "", False)
-    return Verdict(False, f"{missed(record)} of {steps} steps missed, {lost(null)} by the null process",
-                   beyond > HOPELESS * steps)
+    return Verdict(False, f"{missed(record)} of {steps} steps missed, {lost(null)} by the null process", beyond > HOPELESS * steps)

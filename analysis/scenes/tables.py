@@ -116,8 +116,7 @@ def modelling_rows(records):
     loops_of = lambda scene: int(scene.rpartition("/")[2].partition("-")[0])  # which study/scenes/modelling.py wrote
     motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case.name): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
-    timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name)
-                           for case in CASES])
+    timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name) for case in CASES])
     timed["loops"] = [loops_of(scene) for scene in timed.scene]
     result, cases = [], {case.name: case for case in CASES}
     for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):

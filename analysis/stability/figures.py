@@ -36,8 +36,7 @@ def one_map(table, windows, scheme, precision):
         axes.set_title(f"N = {loops:.0f}, n = {2 * loops + 2:.0f}")
     figure.supxlabel("step Δt, ms", fontsize=10)
     figure.supylabel("penalty factor α, kg/(m² s²)", fontsize=10)
-    figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02,
-                    label="largest position error, m")
+    figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02, label="largest position error, m")
     used = set(rows[rows.penalty_asked != "auto"].status.map(category))
     below(figure, 4, [Patch(facecolor=colour, hatch=hatch, edgecolor=GREY, label=name) for name, (colour, hatch) in HATCHES.items() if name in used])
     figure.suptitle(f"{scheme} form, {precision} precision: {rows.implementation.iloc[0]}", x=0.01, ha="left", fontsize=12)

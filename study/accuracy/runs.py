@@ -29,8 +29,7 @@ class Runs:
         if unknown or "default" not in self.settings:
             raise StudyError(f"accuracy: settings: unknown, or without default: {', '.join(sorted(unknown)) or chosen}")
         own = [one for one in lab.contenders if one.variant in lab.registry.own]
-        self.layers = {name: group for name, group in (
-            ("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
+        self.layers = {name: group for name, group in (("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
         self.names = {one.name: one for group in self.layers.values() for one in group}
         self.longest, self.records, self.known = lab.settings["longest"], [], None
         self.chosen = {}  # {scene: {(setting, step): contenders that are timed}}

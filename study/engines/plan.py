@@ -58,8 +58,7 @@ def read_list(path=LIST):
     for engine, entries in listed["engines"].items():
         for entry in entries:
             if set(entry) - {"over", "options"} or entry.get("over") not in values:
-                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, "
-                                 "no more")
+                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, no more")
         found[engine] = [EngineSetting(engine, one["over"], values[one["over"]], tuple(one.get("options", {}).items())) for one in entries]
         if len(set(found[engine])) < len(entries):
             raise StudyError(f"{path}: {engine}: settings must differ")
@@ -110,13 +109,11 @@ class Bench:
         if "ode" not in names:
             return found
         if not (ROOT / "build" / NATIVE_PROGRAM).exists():
-            self.lab.skip(Cell("", program=NATIVE_PROGRAM, role=ENGINE), "unavailable",
-                          "not built with our flags: study/engines/native")
+            self.lab.skip(Cell("", program=NATIVE_PROGRAM, role=ENGINE), "unavailable", "not built with our flags: study/engines/native")
             return found
         chosen, _ = candidates(found[found.name == "ode"], frame([]), ())
         cells = [replace(cell, program=NATIVE_PROGRAM) for cell in chosen.get("cell", ())]
-        return frame([*found.to_dict("records"), *(
-            row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
+        return frame([*found.to_dict("records"), *(row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
 
     def engine_cell(self, program, settings):
         return Cell("", program=program, role=ENGINE, seconds=1.0 + 3 * self.lab.settings["time_limit"],

@@ -66,5 +66,4 @@ PUBLISHED = {"andrews_end": andrews_end}  # at the end of the run; what `publish
 
 def kind(name):
     """In words, what a comparison with `name` is worth."""
-    return ("closed form" if name in CLOSED else "own equations, integrated" if name in INTEGRATED
-            else "self-convergence of two implementations")
+    return "closed form" if name in CLOSED else "own equations, integrated" if name in INTEGRATED else "self-convergence of two implementations"
