@@ -76,7 +76,8 @@ def native(engines, rounds):
             ratio = timing.ratio(paired, row["key"].replace(NATIVE, ""), row["key"])
             if ratio.value == ratio.value:
                 found.append({name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
-                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high})
+                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"],
+                    "ratio": ratio.value, "low": ratio.low, "high": ratio.high})
     return pandas.DataFrame(found)
 
 

@@ -20,9 +20,8 @@ def _pivots(records):
     names = " ".join(record.name for record in done)
     rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
     claims = {}
-    for record in done:
-        for claim in record.output.get("claims", []):
-            claims[claim["claim"]] = claims.get(claim["claim"], True) and bool(claim["holds"])
+    for one in (claim for record in done for claim in record.output.get("claims", [])):
+        claims[one["claim"]] = claims.get(one["claim"], True) and bool(one["holds"])
     lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
     found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
     return {"pivots": pandas.DataFrame(found + lost),

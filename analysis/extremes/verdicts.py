@@ -39,9 +39,7 @@ def by_setting(table):
 
 def listed(table, verdict):
     """Runs of a verdict, those that are equal but for setting and implementation in one entry, with the worst of them."""
-    found = []
-    for (kind, mechanism, step), rows in table[table.verdict == verdict].groupby(["axis", "value", "step"], sort=False):
-        worst = rows.loc[rows.true_error.fillna(-1).idxmax()]
-        found.append({"kind": kind, "mechanism": mechanism, "step": step, "runs": len(rows), "settings": list(dict.fromkeys(rows.setting)),
-                      "commands": list(dict.fromkeys(rows.command))} | worst[["true_error", "wrong_from", "status", "reason"]].to_dict())
-    return found
+    return [{"kind": kind, "mechanism": mechanism, "step": step, "runs": len(rows), "settings": list(rows.setting.unique()),
+             "commands": list(rows.command.unique())} | rows.loc[
+                 rows.true_error.fillna(-1).idxmax(), ["true_error", "wrong_from", "status", "reason"]].to_dict()
+            for (kind, mechanism, step), rows in table[table.verdict == verdict].groupby(["axis", "value", "step"], sort=False)]
