@@ -13,15 +13,13 @@ def context(tables, view):
     names = list(dict.fromkeys(engines.engine[engines.status != "unavailable"]))
     answers = [one["text"] for one in sentences.answers(tables, view)] if len(table) else []
     return {"answers": answers, "says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
-            "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
-            "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": {
-                name: subject_of(name).title for name in dict.fromkeys(engines.subject)},
+            "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()}, "duration": DURATION_S,
+            "engines": {name: title(name) for name in names}, "title": title, "value": sentences.value,
+            "subjects": {name: subject_of(name).title for name in dict.fromkeys(engines.subject)},
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},
-            "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")),
-            "unreached": unreached(table), "comparisons": {subject: rows_of(rows) for subject, rows in
-                                                           table.groupby("subject", sort=False)},
+            "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")), "unreached": unreached(table),
+            "comparisons": {subject: rows_of(rows) for subject, rows in table.groupby("subject", sort=False)},
             "native": rows_of(tables["native"]), "native_says": sentences.of_native(tables["native"]),
-            "value": sentences.value, "title": title,
             "dropped": {name: int((tables[name].status == "dropped").sum()) for name in ("engines", "ours", "rounds")}}
 
 

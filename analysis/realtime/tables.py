@@ -22,12 +22,11 @@ def build(records, view):
     found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
                                      key=lambda column: column.map(order) if column.name == "implementation" else column)
              if len(table) else table for role, table in found.items()}
-    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
-            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]),
-            "machine": pandas.DataFrame([{
-                "after": after, "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"), "seconds": float(one.options["seconds"]),
+    machine = [{"after": after, "step": float(f"{1e-6 * one.option('deadline-us'):g}"), "seconds": one.option("seconds"),
                 "status": one.status, "reason": one.reason, "record": one.name} | {
-                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()])}
+               key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
+    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
+            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"])}
 
 
 def _run(record, null):
@@ -83,20 +82,15 @@ def _largest(tried):
 
 
 def _observed(runs, prefix):
-    """Counts of each run of a size, and the longest step of all."""
+    """Counts of each run of a size, "1300 and 1300", and the longest step of all."""
     if runs.empty:
         return {"record": ""} if not prefix else {}
-    found = {f"{prefix}steps": _counts(runs.steps), f"{prefix}missed": _counts(runs.missed),
-             f"{prefix}null_missed": _counts(runs.null_missed), f"{prefix}max_us": runs.max_us.max()}
+    found = {f"{prefix}{name}": " and ".join(number(value, 6) for value in runs[name]) for name in ("steps", "missed", "null_missed")} | {
+        f"{prefix}max_us": runs.max_us.max()}
     if prefix:
         worst = runs[~runs.kept.astype(bool)].iloc[0]
         return found | {"next_status": worst.status, "next_reason": worst.reason_not}
     return found | {"status": runs.status.iloc[-1], "reason": runs.reason.iloc[-1], "record": " ".join(runs.record)}
-
-
-def _counts(values):
-    """"1300 and 1300": one a run."""
-    return " and ".join(number(value, 6) for value in values)
 
 
 def missed(record):
@@ -119,8 +113,7 @@ def judge(record, null):
     status, reason = of_run(record)
     if status not in FINISHED:
         return Verdict(False, f"{status}: {reason}", True)
-    beyond = missed(record) - lost(null)
-    steps = record.output["steps"]
+    beyond, steps = missed(record) - lost(null), record.output["steps"]
     if beyond <= 0:
         return Verdict(True, "", False)
     return Verdict(False, f"{missed(record)} of {steps} steps missed, {lost(null)} by the null process", beyond > HOPELESS * steps)

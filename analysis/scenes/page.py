@@ -14,12 +14,10 @@ CONSERVED = 1e-3  # share of the energy's scale
 def context(tables, view):
     problems, convergence = tables["problems"], tables["convergence"]
     rows = finest(problems)
-    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"),
-            "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
-            "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
-            "published": set(convergence.problem[convergence.published.notna()]),
+    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"), "gate": gate(tables["gate"]),
+            "everyone": everyone(problems), "conserved_limit": CONSERVED, "convergence": grouped(convergence, "problem"), "digits": digits,
+            "published": set(convergence.problem[convergence.published.notna()]), "good": GOOD, "settings": view.settings,
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
-            "settings": view.settings,
             "sheets": {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}}
 
 
