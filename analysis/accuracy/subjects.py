@@ -34,12 +34,7 @@ class Subject:
     entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
 
     unit = property(lambda self: "m" if self.loops else "relative")
-
-    @property
-    def base(self):
-        """Options that the problem itself needs."""
-        words = self.entry.settings if self.entry else ()
-        return tuple((name.lstrip("-"), value) for name, value in zip(words[::2], words[1::2]))
+    base = property(lambda self: self.entry.options if self.entry else ())  # that the problem itself needs
 
     def every(self, step):
         """Steps from sample to sample; 0 of a four-bar, whose error the program tells."""

@@ -187,8 +187,7 @@ def _standard():
         yield Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
                       kept=("all",), settings=FORMS, harmless=REGULAR)
     for one in read_list()[1]:
-        own = tuple((option, f"{value}") for option, value, usual in (("penalty", one.penalty, "auto"), ("tolerance", one.tolerance, "auto"),
-                                                                      ("max-passes", one.max_passes, 20)) if value != usual)
+        own = tuple(option for option in one.options if option not in (("penalty", "auto"), ("tolerance", "auto"), ("max-passes", "20")))
         yield Extreme(STANDARD[0], one.name, one.scene, None if one.known == EXTRAPOLATED else Standard(one.known), step=one.steps[0],
                       steps=round(one.duration / one.steps[0]), length=LINKS[one.name],
                       kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),

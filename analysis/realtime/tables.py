@@ -18,10 +18,9 @@ Verdict = namedtuple("Verdict", ("kept", "reason", "hopeless"))
 def build(records, view):
     nulls = {one.options["after"]: one for one in records if one.role == "null"}  # by the run that each came after
     order = {name: place for place, name in enumerate(view.registry.variants)}
-    found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role]) for role in ("steps", "search")}
-    found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
-                                     key=lambda column: column.map(order) if column.name == "implementation" else column)
-             if len(table) else table for role, table in found.items()}
+    key = lambda row: (row["scheme"], row["step"], order[row["implementation"]], row["loops"], row["run"])
+    found = {role: pandas.DataFrame(sorted((_run(one, nulls.get(one.name)) for one in records if one.role == role), key=key))
+             for role in ("steps", "search")}
     machine = [{"after": after, "step": float(f"{1e-6 * one.option('deadline-us'):g}"), "seconds": one.option("seconds"),
                 "status": one.status, "reason": one.reason, "record": one.name} | {
                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
