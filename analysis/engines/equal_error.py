@@ -1,8 +1,6 @@
 # Times at equal error: each engine's fastest run that meets an error, and ours at that run's error or a smaller one.
 #
 # Runs that were not timed alone choose the candidates; the common rounds have the times that are compared.
-import pandas
-
 from analysis.core import timing
 from analysis.core.outcomes import finished
 from analysis.engines.runs import NATIVE
@@ -54,7 +52,6 @@ def _near(rows):
 def table(engines, ours, rounds, own):
     """A row for each subject, engine, error that it reaches, and side of ours. `ratio`: the engine's time over ours;
     empty, with the reason, where ours does not reach the error."""
-    rows = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
         mine, paired = ours[ours.subject == subject], timing.Paired(timed)
@@ -62,23 +59,20 @@ def table(engines, ours, rounds, own):
         for name, of_engine in _timed(theirs, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():
-                    rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired))
-    return pandas.DataFrame(rows)
+                    yield _row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired)
 
 
 def native(engines, rounds):
     """A row for each run of an engine that was timed both ways: Debian's build over that with our flags."""
-    found = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
         done, paired = _timed(theirs, timed), timing.Paired(timed)
         for row in done[done.name.str.endswith(NATIVE)].to_dict("records"):
             ratio = timing.ratio(paired, row["key"].replace(NATIVE, ""), row["key"])
             if ratio.value == ratio.value:
-                found.append({name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
+                yield {name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
                     "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"],
-                    "ratio": ratio.value, "low": ratio.low, "high": ratio.high})
-    return pandas.DataFrame(found)
+                    "ratio": ratio.value, "low": ratio.low, "high": ratio.high}
 
 
 def samples(rounds):

@@ -68,10 +68,9 @@ def value(over, amount):
 
 def of_engines(engines):
     """A sentence for each engine: what it reaches, what it loses."""
-    said = []
     for engine, rows in engines.groupby("engine", sort=False):
         if (rows.status == "unavailable").all():
-            said.append(f"{title(engine)}: left out, {rows.reason.iloc[0]}.")
+            yield f"{title(engine)}: left out, {rows.reason.iloc[0]}."
             continue
         made = rows[~rows.status.isin(NOT_MADE)]
         lost = made[~made.status.isin(FINISHED)]
@@ -80,5 +79,4 @@ def of_engines(engines):
         best = "none finished" if done.empty else (
             f"{number(done.error.min(), 2)} m is the smallest error ({subject_of(done.loc[done.error.idxmin()].subject).title})")
         version = next((one for one in made.version if one), "")
-        said.append(f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}.")
-    return said
+        yield f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}."

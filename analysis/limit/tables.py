@@ -19,8 +19,8 @@ def build(records, view):
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
-             "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
-             "sweeps": _sweeps(by_role.get("sweep", []))}
+             "steps": [], "scenes": [], "leads": [], "batches": [*_batches(by_role.get("batch", []))],
+             "sweeps": [*_sweeps(by_role.get("sweep", []))]}
     for role in (*FORMS, *KINDS):
         for scene, timed, cells, _ in contests(by_role, role):
             names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
@@ -56,7 +56,7 @@ def _leads(timed, cells, registry):
 
 def _batches(records):
     """A row for each scene, number of sets and implementation."""
-    rows, found = pandas.DataFrame([row for record in records for row in _batch(record)]), []
+    rows = pandas.DataFrame([row for record in records for row in _batch(record)])
     for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False) if len(rows) else ():
         good, lost = group[group.status == "ok"], group[~group.status.isin(["ok", "dropped"])]
         first = lost.iloc[0] if len(lost) else group.iloc[0]
@@ -68,8 +68,7 @@ def _batches(records):
             row |= {"status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0],
                     "lanes": good.lanes.iloc[0], "step_us": median(good.step_us), "alone_us": median(good.alone_us),
                     "gain": gain.value, "low": gain.low, "high": gain.high, "least": good.gain.min(), "most": good.gain.max()}
-        found.append(row)
-    return found
+        yield row
 
 
 def _batch(record):
@@ -84,13 +83,12 @@ def _batch(record):
 
 def _sweeps(records):
     """A row for each scene and number of jobs."""
-    found = []
     for scene in dict.fromkeys(record.cell["scene"] for record in records):
         mine = [record for record in records if record.cell["scene"] == scene]
         good = [record for record in mine if record.done]
         known = {"scene": scene, "implementation": mine[0].cell["contenders"][0]}
         if not good:
-            found.append(known | {"status": mine[0].status, "reason": mine[0].reason, "record": mine[0].name})
+            yield known | {"status": mine[0].status, "reason": mine[0].reason, "record": mine[0].name}
             continue
         lanes = good[0].output["lanes"]
         rows = pandas.DataFrame([row | {"process": process} for process, record in enumerate(good) for row in record.output["rows"]])
@@ -99,9 +97,8 @@ def _sweeps(records):
         for jobs, each in rows.groupby("jobs", sort=False):
             rates = lanes / each.wall_s
             rate = rates.median()
-            found.append(known | {
+            yield known | {
                 "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate, "least": rates.min(),
                 "most": rates.max(), "lane_us": 1e6 / lanes * each.cpu_s.median(), "gain": (each.wall_s_alone / each.wall_s).median(),
                 "work": (each.cpu_s / each.cpu_s_alone).median(), "memory_mb": each.memory_mb.max(), "merged_per_s": merge,
-                "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name})
-    return found
+                "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name}

@@ -25,7 +25,8 @@ def build(records, view):
                 "status": one.status, "reason": one.reason, "record": one.name} | {
                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
-            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"])}
+            "judging": pandas.DataFrame(_judging([one for one in records if one.role == "judging"])), "tried": found["search"],
+            "largest": pandas.DataFrame(_largest(found["search"]))}
 
 
 def _run(record, null):
@@ -46,23 +47,20 @@ def _judging(records):
         "scene": one.cell["scene"], "implementation": one.cell["contenders"][0], "status": of_run(one)[0], "reason": of_run(one)[1],
         "variables": one.output.get("variables"), "mean_us": (one.output.get("step_us") or {}).get("mean"),
         "judge_us": one.output.get("judge_us"), "record": one.name} for one in records])
-    rows = []
     for scene, tried in runs.groupby("scene", sort=False) if len(runs) else ():
         whole = tried[tried.status.isin(FINISHED)]
         if whole.empty:
-            rows.append(tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None})
+            yield tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None}
             continue
         own = whole[whole.implementation == whole.groupby("implementation", sort=False).mean_us.median().idxmin()]
         shares = own.judge_us / own.mean_us
         row = own.loc[shares.sort_values().index[len(own) // 2]].to_dict()
         share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
-        rows.append(row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)})
-    return pandas.DataFrame(rows)
+        yield row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)}
 
 
 def _largest(tried):
     """One row a search: the largest size all of whose runs kept the deadline, and the next one tried that did not."""
-    rows = []
     for key, runs in tried.groupby(["scheme", "step", "implementation"], sort=False) if len(tried) else ():
         made = runs[runs.status != "dropped"]
         every = made.groupby("loops").kept.all() if len(made) else pandas.Series(dtype=bool)
@@ -76,8 +74,7 @@ def _largest(tried):
             row["record"] = " ".join(made.record)  # none of these kept the deadline
         if above:
             row |= {"next": min(above)} | _observed(made[made.loops == min(above)], "next_")
-        rows.append(row)
-    return pandas.DataFrame(rows)
+        yield row
 
 
 def _observed(runs, prefix):

@@ -38,7 +38,7 @@ def build(records, view):
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
-    found["modelling"] = modelling_rows(records)
+    found["modelling"] = list(modelling_rows(records))
     order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
@@ -47,7 +47,6 @@ def build(records, view):
 
 def problem_rows(problem, runs):
     """One row a run. `runs`: {(implementation, step): record}."""
-    result = []
     for (name, step), record in runs.items():
         status, reason = of_run(record)
         row = {"problem": problem.name, "title": problem.title, "implementation": name,
@@ -61,8 +60,7 @@ def problem_rows(problem, runs):
         if status in FINISHED and problem.mirrored:
             row["asymmetry"] = max(sum(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}")).max()
                                        for axis, sign in (("x", 1), ("y", -1))) for left, right in problem.mirrored)
-        result.append(row)
-    return result
+        yield row
 
 
 def _known(problem, runs, name, step):
@@ -92,7 +90,6 @@ def _values(record, column):
 def convergence_rows(problem, runs):
     """The final value of every judged component over three steps: order and extrapolated value; where it is
     published, that and by how much the extrapolated value differs."""
-    result = []
     published = PUBLISHED[problem.published]() if problem.published else {}
     for name in dict.fromkeys(name for (name, _), record in runs.items() if record.role == "compared"):
         three = [runs.get((name, step)) for step in problem.steps]
@@ -101,12 +98,11 @@ def convergence_rows(problem, runs):
         for column in problem.columns(three[0].series):
             values = [_values(record, column)[-1] for record in three]
             limit, known = extrapolate(*values[1:]), published.get(column, numpy.nan)
-            result.append({
+            yield {
                 "problem": problem.name, "implementation": name, "component": column, "time": three[0].series["t"][-1],
                 "coarse": values[0], "finer": values[1], "finest": values[2], "order": float(observed_order(*values)),
                 "order_meaningful": bool(abs(values[1] - values[2]) > ORDER_NOISE * max(abs(values[2]), 1e-3)),
-                "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name})
-    return result
+                "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name}
 
 
 def modelling_rows(records):
@@ -118,7 +114,7 @@ def modelling_rows(records):
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
     timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name) for case in CASES])
     timed["loops"] = [loops_of(scene) for scene in timed.scene]
-    result, cases = [], {case.name: case for case in CASES}
+    cases = {case.name: case for case in CASES}
     for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):
         status, reason = of_run(record)
         rows = timed[(timed.implementation == name) & (timed.loops == loops)]
@@ -136,5 +132,4 @@ def modelling_rows(records):
         if status in GOOD:
             exact = four_bar(_values(record, "t"), loops)
             row["position_error"] = max(abs(_values(record, column) - exact[column]).max() for column in ("B0.x", "B0.y"))
-        result.append(row)
-    return result
+        yield row

@@ -49,14 +49,13 @@ def _who(lab, kind):
 
 def _run(lab, cell, scene, setting, who, most=None):
     """[Cell of each, or of so many at `most`, who serves the setting], without those that are left out."""
-    words, found = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)]), []
+    words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
     for one in [one for one in who if lab.registry.serves(one.variant, *setting.needs)][:most]:
         wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns, every=cell.every)
         if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
-            found.append(wanted)
+            yield wanted
         else:
             lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
-    return found
 
 
 def pivots(lab):
