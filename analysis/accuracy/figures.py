@@ -147,7 +147,7 @@ def regions(winners, look):
         axes.set_ylabel("error at most")
         axes.tick_params(length=0)
         axes.set_title(f"N-four-bar, fastest of {TITLES[layer]}")
-        axes.legend(handles=_legend(rows, look), loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
+        axes.legend(handles=[*_legend(rows, look)], loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
     return figure
 
 
@@ -168,12 +168,11 @@ def _cell(axes, row, x, y, look):
 
 def _legend(rows, look):
     won = met(rows).implementation.value_counts()
-    handles = [Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items()]
+    yield from (Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items())
     if (~rows.settled).any():
-        handles.append(Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open"))
+        yield Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open")
     if (rows.equivalent != "").any():
-        handles.append(Patch(facecolor="none", label="≈1: one other is as fast"))
+        yield Patch(facecolor="none", label="≈1: one other is as fast")
     for kind, text in ((NOBODY, "nobody: no run meets the error"), (NOT_TIMED, "not timed: too long, or dropped")):
         if (rows.implementation == kind).any():
-            handles.append(Patch(**NONE, label=text))
-    return handles
+            yield Patch(**NONE, label=text)

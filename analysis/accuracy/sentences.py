@@ -56,7 +56,6 @@ def of_layer(rows, layer):
 
 def summary(winners):
     """For each required error the fastest at own fill, by layer: {"who", "sizes"}."""
-    found = []
     for required, rows in sorted(own_fill(winners).groupby("required"), reverse=True):
         row = {"required": required}
         for layer in LAYERS:
@@ -65,8 +64,7 @@ def summary(winners):
                 words = f", {one.setting}{'' if one.settled else ' (open)'}" if one.setting else ""
                 groups.setdefault(one.implementation + words, []).append(f"{one.variables:.0f}")
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
-        found.append(row)
-    return found
+        yield row
 
 
 def of_forms(table):

@@ -38,7 +38,7 @@ def one_figure(tables, subjects, own):
     grid[0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
     figure.supxlabel("computation for a simulated second, s", fontsize=10)
     figure.supylabel("largest position error, m", fontsize=10)
-    below(figure, 4, _key(engines.engine.unique()))
+    below(figure, 4, [*_key(engines.engine.unique())])
     figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
     return figure
 
@@ -76,10 +76,9 @@ def title(engine):
 
 
 def _key(engines):
-    entries = [Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items()]
+    yield from (Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items())
     for engine in sorted((one for one in engines if not one.endswith(NATIVE)), key=place_of):
         colour, marker = look(engine)
-        entries.append(Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front"))
-    return [*entries, Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none",
-                             label="other runs of an engine"),
-            Line2D([], [], color=GREY, marker="x", linestyle="none", label="upper edge: lost the motion")]
+        yield Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front")
+    yield Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none", label="other runs of an engine")
+    yield Line2D([], [], color=GREY, marker="x", linestyle="none", label="upper edge: lost the motion")
