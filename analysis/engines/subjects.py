@@ -38,10 +38,6 @@ class Subject:
 
     place = property(lambda self: (self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops))  # in tables and figures
 
-    def asks(self, engine):
-        """Whether an engine's program models it."""
-        return self.name != ANDREWS or engine in SOLVERS
-
     def error(self, record, engine):
         """Position error of a run, of an engine's or of ours, m: the largest distance of a point from where it should be."""
         output, series = record.output, record.series

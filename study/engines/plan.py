@@ -12,7 +12,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import Subject, subject_of
+from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of
 from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.curves import Curve, follow
@@ -72,7 +72,7 @@ def columns(settings):
 
 def run(lab, column):
     subject, missing = subject_of(column), unavailable()
-    asked = [engine for engine in read_list() if subject.asks(engine)]
+    asked = [engine for engine in read_list() if subject.name != ANDREWS or engine in SOLVERS]
     for engine in asked:
         if missing[engine]:
             lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])

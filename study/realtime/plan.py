@@ -50,10 +50,9 @@ def cases(lab):
 
 
 def distributions(lab):
-    duration = lab.settings["duration"]
     for step in lab.settings["steps"]:
-        null(lab, step, duration, "distributions")
-    lab.run([case.cell("steps", loops, duration) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
+        null(lab, step, lab.settings["duration"], "distributions")
+    lab.run([case.cell("steps", loops, lab.settings["duration"]) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
 
 
 def judging(lab):
