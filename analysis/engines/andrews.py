@@ -22,8 +22,7 @@ LOOPS = numpy.zeros((3, 7))  # O-E-P = B-P, A-S-P and A-U-P
 LOOPS[:, :2], LOOPS[0, 2] = LENGTHS[:2], -LENGTHS[2]
 LOOPS[1, [4, 3]], LOOPS[2, [6, 5]] = -LENGTHS[[4, 3]], -LENGTHS[[6, 5]]
 SPRING, STIFFNESS, FREE_LENGTH, TORQUE = 18e-3 + 20e-3j, 4530.0, 77.85e-3, 33e-3  # from C to this place on K3; on K1
-START = (-0.0617138900142764496, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550,
-         1.23054744454982119)  # published: beta, gamma, phi, delta, epsilon; Theta = 0, Omega = -phi
+START = -0.0617138900142764496, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550, 1.23054744454982119
 
 
 def positions(times):
@@ -35,7 +34,8 @@ def positions(times):
 
 @functools.cache
 def _motion():
-    """The state at any times, a little beyond the end too: angles from +x of the bodies' x axes, then their rates."""
+    """The state at any times, a little beyond the end too: angles from +x of the bodies' x axes, then their rates. It starts as published,
+    with Theta = 0 and Omega = -phi."""
     beta, gamma, phi, delta, epsilon = START
     start = beta, beta + math.pi, gamma - math.pi / 2, phi + delta - math.pi / 2, delta, epsilon - phi, epsilon - math.pi / 2
     return solve_ivp(_rates, (0, 1.02 * DURATION_S), [*start, *numpy.zeros(7)], "DOP853", rtol=TOLERANCE,

@@ -14,7 +14,7 @@ def true_motion(cell, references, times):
     {finer: Record} where nothing else knows the motion."""
     times = numpy.array(times, dtype=float)
     if cell.motion:
-        solutions = cell.motion.solutions(times) if len(times) else [{}]
+        solutions = cell.motion.solutions(times) if len(times) else [{}]  # motions are asked for at some times
         return solutions, rounding(cell, solutions, times), cell.motion.truth
     for factor in FINER:
         status, reason = of_run(references[factor]) if factor in references else ("missing", "it was not run")

@@ -156,4 +156,5 @@ def _pull(between, rate, stiffness, damping, free):
 
 
 def integrate(derivative, times, start, tolerance=TOLERANCE, method="DOP853"):
-    return solve_ivp(derivative, (0, max(times[-1], 1e-9)), start, method, times, rtol=tolerance, atol=tolerance).y
+    span = 0, max(times[-1], 1e-9)  # the start alone may be asked for
+    return solve_ivp(derivative, span, start, method, times, rtol=tolerance, atol=tolerance).y
