@@ -23,8 +23,7 @@ FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step"
 
 def build(records, view):
     listed = {problem.scene: problem for problem in read_list()[1]}
-    found = {"gate": [], "problems": [], "convergence": []}
-    runs = {}
+    found, runs = {"gate": [], "problems": [], "convergence": []}, {}
     for record in records:
         if record.role in ("gate", "compared", "everyone"):
             problem = listed.get(record.cell["scene"])

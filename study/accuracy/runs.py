@@ -77,9 +77,8 @@ class Runs:
         steps = self.stretch(scene, step, dense)
         steps = max(LEAST, steps // LOOK) if role == "look" else steps
         words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, "--steps", steps, *more)
-        self.records += timing.measure(
-            self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
-            role=f"{role}/{self.settings[name].file_name}", seconds=60)
+        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
+                                       role=f"{role}/{self.settings[name].file_name}", seconds=60)
 
     def stretch(self, scene, step, dense=False):
         """Steps from the start that are timed: of the whole run, but no more than take a few hundredths of a second."""
