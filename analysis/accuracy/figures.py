@@ -27,18 +27,16 @@ NONE = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth
 
 
 def draw(tables, view):
-    look, found = Look(view.registry), {}
-    won = tables["winners"][tables["winners"].fill_asked.isna()]
+    look, found, (points, winners) = Look(view.registry), {}, (tables[name] for name in ("points", "winners"))
     about = tables["references"].drop_duplicates("subject").set_index("subject")
-    for subject, rows in tables["points"].groupby("subject", sort=False):
+    for subject, rows in points[points.fill_asked.isna()].groupby("subject", sort=False):
         one = about.loc[subject]
-        natural = rows[rows.fill_asked.isna()]
         found[name_of(subject)] = work(
-            natural, won[won.subject == subject], look, "largest of position, m" if one.unit == "m" else "root mean square, relative",
-            f"{one.title}, n = {natural.variables.max():.0f}, {one.duration:g} s")
-    chains = tables["winners"][tables["winners"].loops.notna()]
-    if len(chains):
-        found["regions"] = regions(chains, look)
+            rows, winners[winners.fill_asked.isna() & (winners.subject == subject)], look,
+            "largest of position, m" if one.unit == "m" else "root mean square, relative",
+            f"{one.title}, n = {rows.variables.max():.0f}, {one.duration:g} s")
+    if winners.loops.notna().any():
+        found["regions"] = regions(winners[winners.loops.notna()], look)
     return found
 
 
@@ -91,8 +89,8 @@ def _series(rows, front, look):
     settings = list(dict.fromkeys(setting for _, setting in chosen))
     for name, setting in chosen:
         mine, place = every[name, setting], settings.index(setting)
-        line = look.line(name) | {"color": ALTERNATIVES[place % len(ALTERNATIVES)], "linestyle": DASHES[place % len(DASHES)],
-                                  "markerfacecolor": ALTERNATIVES[place % len(ALTERNATIVES)]}
+        colour, dash = ALTERNATIVES[place % len(ALTERNATIVES)], DASHES[place % len(DASHES)]
+        line = look.line(name) | {"color": colour, "markerfacecolor": colour, "linestyle": dash}
         found[name, setting] = line, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
     return found
 
@@ -149,7 +147,7 @@ def regions(winners, look):
         axes.set_ylabel("error at most")
         axes.tick_params(length=0)
         axes.set_title(f"N-four-bar, fastest of {TITLES[layer]}")
-        axes.legend(handles=_legend(rows, look), loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
+        axes.legend(handles=[*_legend(rows, look)], loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
     return figure
 
 
@@ -158,26 +156,23 @@ def _cell(axes, row, x, y, look):
         axes.add_patch(Rectangle((x, y), 1, 1, **NONE))
         text, colour = row.implementation, "#777777"
     else:
-        settled = bool(row.settled)
         axes.add_patch(Rectangle((x, y), 1, 1, edgecolor="white", linewidth=1.2, facecolor=look.colour(row.implementation),
-                                 alpha=STRONG if settled else WEAK))
-        if not settled:
+                                 alpha=STRONG if row.settled else WEAK))
+        if not row.settled:
             axes.add_patch(Rectangle((x, y), 1, 1, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
-        others = len(row.equivalent.split("; ")) if row.equivalent else 0
-        text = f"{row.setting}\n{step(row.step)}" + (f"  ≈{others}" if others else "")
-        colour = "black"
+        others = f"  ≈{len(row.equivalent.split('; '))}" if row.equivalent else ""
+        text, colour = f"{row.setting}\n{step(row.step)}{others}", "black"
     axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=6.8, linespacing=1.2, color=colour, zorder=6,
               bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.78})
 
 
 def _legend(rows, look):
     won = met(rows).implementation.value_counts()
-    handles = [Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items()]
-    if (rows.settled == False).any():  # noqa: E712 (a nullable flag)
-        handles.append(Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open"))
+    yield from (Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items())
+    if (~rows.settled).any():
+        yield Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open")
     if (rows.equivalent != "").any():
-        handles.append(Patch(facecolor="none", label="≈1: one other is as fast"))
+        yield Patch(facecolor="none", label="≈1: one other is as fast")
     for kind, text in ((NOBODY, "nobody: no run meets the error"), (NOT_TIMED, "not timed: too long, or dropped")):
         if (rows.implementation == kind).any():
-            handles.append(Patch(**NONE, label=text))
-    return handles
+            yield Patch(**NONE, label=text)

@@ -23,21 +23,18 @@ def table(scene, made, measured):
     runs = {(run["implementation"], run["setting"]): run for run in own.to_dict("records")}  # the longest
     mine = measured.loc[(measured.role == "pair") & (measured.status != "dropped"), measured.columns.intersection([*USED, "layout"])]
     found = []
-    for kind, pairs in PAIRS.items():
-        for first, second in pairs:
-            both = mine[mine.setting.isin((first, second))]
-            for name, rows in both.groupby("implementation", sort=False):
-                if rows.setting.nunique() == 2:
-                    found.append({"scene": scene, "kind": kind, "first": first, "second": second, "implementation": name}
-                                 | _row(rows, [runs.get((name, setting)) for setting in (first, second)], (first, second)))
+    for kind, both in ((kind, both) for kind, pairs in PAIRS.items() for both in pairs):
+        for name, rows in mine[mine.setting.isin(both)].groupby("implementation", sort=False):
+            if rows.setting.nunique() == 2:
+                found.append({"scene": scene, "kind": kind, "first": both[0], "second": both[1], "implementation": name}
+                             | _row(rows, [runs.get((name, setting)) for setting in both], both))
     return pandas.DataFrame(found)
 
 
 def _row(rows, runs, both):
     """`runs`: of `both` settings, None where there is none."""
-    named = timing.apart(rows.assign(implementation=rows.setting))
     lost = rows[rows.status != "ok"]
-    ratio = timing.ratio(named, both[1], both[0])
+    ratio = timing.ratio(timing.apart(rows.assign(implementation=rows.setting)), both[1], both[0])
     why = "" if lost.empty or ratio.value > 0 else f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}"
     found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
              "variables": rows.get("variables", pandas.Series(dtype=float)).max(),

@@ -46,16 +46,13 @@ def runs(records, subject, known):
 
 def timed(records):
     """A row for each contender of each process of timed cells ("look/SETTING", "time/SETTING", "pair/SETTING")."""
-    chosen = {record.name: record for record in timing.counted(
-        [one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
+    chosen = {record.name: record for record in timing.counted([one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
     found = timing.processes(chosen.values())
-    found["implementation"] = [name.partition("+")[0] for name in found.implementation]  # of another pair: the anchor
-    for name, value in (("setting", setting_of), ("step", lambda record: record.option("--step")),
-                        ("role", lambda record: record.role.partition("/")[0])):
-        found[name] = [value(chosen[one]) for one in found.record]
-    for name in ("passes", "steps"):  # of which nobody has one
-        found[name] = found.get(name, numpy.nan)
-    return found.drop_duplicates([*KEY, "role", "process"])
+    of = [chosen[one] for one in found.record]
+    return found.assign(
+        implementation=[name.partition("+")[0] for name in found.implementation],  # of another pair: the anchor
+        setting=[*map(setting_of, of)], step=[one.option("--step") for one in of], role=[one.role.partition("/")[0] for one in of],
+        **{name: found.get(name, numpy.nan) for name in ("passes", "steps")}).drop_duplicates([*KEY, "role", "process"])
 
 
 def points(made, measured):

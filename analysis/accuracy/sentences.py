@@ -14,8 +14,7 @@ def answers(tables, view):
         dropped = (asked.implementation == NOT_TIMED).any()
         return [{"text": "Not measured: " + ("the budget ended before those that may be the fastest were timed." if dropped else
                                              "nobody reached a required error with a time."), "anchor": ""}]
-    found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"}
-             for layer in LAYERS if (won.layer == layer).any()]
+    found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"} for layer in LAYERS if (won.layer == layer).any()]
     return found + [{"text": text, "anchor": anchor} for anchor, of in (("precision", of_precision), ("reuse", of_reuse))
                     for text in of(tables["pairs"])[:1]]
 
@@ -41,17 +40,10 @@ def own_fill(winners):
     return winners[winners.loops.notna() & winners.fill_asked.isna()]
 
 
-def most(values):
-    """(the most frequent, how often)"""
-    counts = values.value_counts()
-    return counts.index[0], int(counts.iloc[0])
-
-
 def of_layer(rows, layer):
     """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
-    who, often = most(rows.implementation)
-    setting, with_it = most(rows.setting)
-    settled = int((rows.settled == True).sum())  # noqa: E712 (a nullable flag)
+    (who, often), (setting, with_it) = (next(iter(names.value_counts().items())) for names in (rows.implementation, rows.setting))
+    settled = int(rows.settled.sum())
     text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
             f"{settled} of these are settled. The best setting is most often {setting}, in {with_it}.")
     largest = rows[rows.variables == rows.variables.max()].sort_values("required")
@@ -64,18 +56,15 @@ def of_layer(rows, layer):
 
 def summary(winners):
     """For each required error the fastest at own fill, by layer: {"who", "sizes"}."""
-    found = []
     for required, rows in sorted(own_fill(winners).groupby("required"), reverse=True):
         row = {"required": required}
         for layer in LAYERS:
             groups = {}
             for one in rows[rows.layer == layer].sort_values("variables").itertuples():
-                words = f"{one.implementation}, {one.setting}" + ("" if one.settled else " (open)") if one.setting else (
-                    one.implementation)
-                groups.setdefault(words, []).append(f"{one.variables:.0f}")
+                words = f", {one.setting}{'' if one.settled else ' (open)'}" if one.setting else ""
+                groups.setdefault(one.implementation + words, []).append(f"{one.variables:.0f}")
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
-        found.append(row)
-    return found
+        yield row
 
 
 def of_forms(table):
@@ -83,8 +72,7 @@ def of_forms(table):
     if rows.empty:
         return []
     least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
-    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty "
-            "form."]
+    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
     per_pass = ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()
     if len(per_pass):
         said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
@@ -117,8 +105,7 @@ def of_precision(table):
 
 def reuse_rows(table):
     """For each setting that reuses factors: medians over implementations, size by size."""
-    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna()
-                 & table.second_factorizations.notna()]
+    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna() & table.second_factorizations.notna()]
     rows = rows.assign(saved=1 - rows.second_factorizations / rows.first_factorizations)
     found = rows.groupby(["variables", "first", "second"], sort=False).agg(
         implementations=("implementation", "nunique"), saved=("saved", "median"),

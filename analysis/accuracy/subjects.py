@@ -10,7 +10,8 @@ import numpy
 
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, of_run
-from study.scenes import mechanics, metric
+from study.scenes import metric
+from study.scenes.mechanics import TOLERANCE
 from study.scenes.metric import extrapolate
 from study.scenes.problems import read_list
 from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
@@ -32,15 +33,8 @@ class Subject:
     loops: int | None = None
     entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
 
-    @property
-    def unit(self):
-        return "m" if self.loops else "relative"
-
-    @property
-    def base(self):
-        """Options that the problem itself needs."""
-        words = self.entry.settings if self.entry else ()
-        return tuple((name.lstrip("-"), value) for name, value in zip(words[::2], words[1::2]))
+    unit = property(lambda self: "m" if self.loops else "relative")
+    base = property(lambda self: self.entry.options if self.entry else ())  # that the problem itself needs
 
     def every(self, step):
         """Steps from sample to sample; 0 of a four-bar, whose error the program tells."""
@@ -63,8 +57,7 @@ def problem(name):
     entry = next((one for one in read_list()[1] if one.name == name and not one.scene.startswith("four-bar:")), None)
     if entry is None:
         raise StudyError(f"accuracy: columns: '{name}' is no standard problem of its own scene (study/scenes/problems.yaml)")
-    return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND),
-                   entry=entry)
+    return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND), entry=entry)
 
 
 def of(kind, entry, settings):
@@ -86,10 +79,10 @@ def reference(subject, runs=()):
     if subject.loops:
         times = numpy.linspace(0, subject.duration, 401)
         first, second = (four_bar(at, subject.loops) for at in (times * (1 + ULP), times))
-        moved = max(float(numpy.max(numpy.abs(first[name] - second[name]))) for name in ("B0.x", "B0.y"))
+        moved = max(float(abs(first[name] - second[name]).max()) for name in ("B0.x", "B0.y"))
         return Reference("closed form", moved + ULP * (subject.loops + 1), "rounding")
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
-    name, judged = subject.entry.known, subject.entry.judged
+    name = subject.entry.known
     if name == EXTRAPOLATED:
         known, less = _extrapolated(runs)
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
@@ -98,10 +91,8 @@ def reference(subject, runs=()):
         if name in CLOSED:
             less, origin = CLOSED[name](times * (1 + ULP)), "rounding"
         else:
-            with mechanics.tolerance(100 * mechanics.TOLERANCE):
-                less, origin = KNOWN[name](times), "a hundred times the tolerance"
-    known, less = ({column: values for column, values in one.items() if column.split(".")[0] in judged}
-                   for one in (known, less))
+            less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
+    known, less = ({column: one[column] for column in subject.entry.columns(one)} for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
 
 
@@ -110,9 +101,8 @@ def _extrapolated(runs):
     lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
     if lost or len(runs) < 3:
         raise StudyError(": ".join(lost) if lost else "its runs were not made")
-    motions = [{column: numpy.array(values) for column, values in one.series.items() if column != "t"} for one in runs]
-    coarse, fine = ({column: extrapolate(first[column], second[column]) for column in first}
-                    for first, second in zip(motions, motions[1:]))
+    coarse, fine = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
+                    for both in zip(runs, runs[1:]))
     return fine, coarse
 
 

@@ -51,10 +51,7 @@ def fastest(found, samples):
     there. Ranked are those that have rounds; the others were slower in a look, or the budget did not reach them."""
     if not found:
         return None
-    in_rounds = {}
-    for point in found:
-        if point["time_from"] == ROUNDS:
-            in_rounds.setdefault(point["implementation"], label(point))
+    in_rounds = {point["implementation"]: label(point) for point in reversed(found) if point["time_from"] == ROUNDS}
     ranking = timing.rank(samples, in_rounds.values()) if in_rounds else None
     by_label = {label(point): point for point in found}
     first = by_label[ranking.winner] if ranking else found[0]

@@ -4,6 +4,7 @@
 # Points are complex numbers. With u_j = exp(i angle_j), every centre of mass is ground + Z u and the three loops are
 # L u = const: derivatives by the angles are i Z diag(u) and i L diag(u).
 import functools
+import math
 
 import numpy
 from scipy.integrate import solve_ivp
@@ -31,17 +32,13 @@ def positions(times):
     return numpy.stack([places.real, places.imag], axis=1)
 
 
-def start():
-    """Angles from +x of the bodies' x axes, as published: [beta, gamma, phi, delta, epsilon], Theta = 0, Omega = -phi."""
-    beta, gamma, phi, delta, epsilon = START
-    quarter = numpy.pi / 2
-    return numpy.array([beta, beta + numpy.pi, gamma - quarter, phi + delta - quarter, delta, epsilon - phi, epsilon - quarter])
-
-
 @functools.cache
 def _motion():
-    """The state at any times, a little beyond the end too."""
-    return solve_ivp(_rates, (0, 1.02 * DURATION_S), [*start(), *numpy.zeros(7)], "DOP853", rtol=TOLERANCE,
+    """The state at any times, a little beyond the end too: angles from +x of the bodies' x axes, then their rates. It starts as published,
+    with Theta = 0 and Omega = -phi."""
+    beta, gamma, phi, delta, epsilon = START
+    start = beta, beta + math.pi, gamma - math.pi / 2, phi + delta - math.pi / 2, delta, epsilon - phi, epsilon - math.pi / 2
+    return solve_ivp(_rates, (0, 1.02 * DURATION_S), [*start, *numpy.zeros(7)], "DOP853", rtol=TOLERANCE,
                      atol=1e-2 * TOLERANCE, dense_output=True).sol
 
 

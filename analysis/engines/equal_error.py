@@ -1,17 +1,14 @@
 # Times at equal error: each engine's fastest run that meets an error, and ours at that run's error or a smaller one.
 #
 # Runs that were not timed alone choose the candidates; the common rounds have the times that are compared.
-import pandas
-
 from analysis.core import timing
 from analysis.core.outcomes import finished
-from analysis.engines.runs import ENGINE, NATIVE, OURS, key
+from analysis.engines.runs import NATIVE
 
 LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, where noise would decide who meets one
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
 CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
-SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "library": "the fastest library",
-         "paper": "the paper's scheme"}
+SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "library": "the fastest library", "paper": "the paper's scheme"}
 NEAR = 1.3   # untimed times are this uncertain
 MOST = 2     # candidates of a side for one run of an engine
 
@@ -55,61 +52,48 @@ def _near(rows):
 def table(engines, ours, rounds, own):
     """A row for each subject, engine, error that it reaches, and side of ours. `ratio`: the engine's time over ours;
     empty, with the reason, where ours does not reach the error."""
-    rows = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
         mine, paired = ours[ours.subject == subject], timing.Paired(timed)
-        sides = {side: (every, _timed(every, OURS, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
-        for name, of_engine in _timed(theirs, ENGINE, timed).groupby("name", sort=False):
+        sides = {side: (every, _timed(every, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
+        for name, of_engine in _timed(theirs, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():
-                    rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired))
-    return pandas.DataFrame(rows)
+                    yield _row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired)
 
 
 def native(engines, rounds):
     """A row for each run of an engine that was timed both ways: Debian's build over that with our flags."""
-    found = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
-        done, paired = _timed(theirs, ENGINE, timed), timing.Paired(timed)
+        done, paired = _timed(theirs, timed), timing.Paired(timed)
         for row in done[done.name.str.endswith(NATIVE)].to_dict("records"):
-            generic = row | {"name": row["name"].removesuffix(NATIVE)}
-            ratio = timing.ratio(paired, key(generic), row["key"])
+            ratio = timing.ratio(paired, row["key"].replace(NATIVE, ""), row["key"])
             if ratio.value == ratio.value:
-                found.append({"subject": subject, "engine": generic["name"], "setting": row["setting"], "over": row["over"],
-                              "value": row["value"], "native_time": row["time"], "ratio": ratio.value, "low": ratio.low,
-                              "high": ratio.high, "record": row["record"]})
-    return pandas.DataFrame(found)
+                yield {name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
+                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"],
+                    "ratio": ratio.value, "low": ratio.low, "high": ratio.high}
 
 
 def samples(rounds):
     """Rows as analysis/core/timing.py has them, a process a round. Who failed in one round has failed."""
-    rows = rounds.assign(implementation=[key(row) for row in rounds.to_dict("records")], process=rounds["round"], error=0.0)
+    rows = rounds.assign(implementation=rounds.key, process=rounds["round"], error=0.0)
     done = finished(rows)
     failed = rows.implementation[~rows.index.isin(done.index) & (rows.status != "dropped")]
     return timing.apart(done[~done.implementation.isin(failed)].assign(status="ok"), "time")
 
 
-def _timed(rows, side, timed):
+def _timed(rows, timed):
     """Finished rows that were timed in the rounds, with the median of these times."""
-    done, medians = finished(rows), timed.groupby("implementation").time.median()
-    done = done.assign(key=pandas.Series([key(row | {"side": side}) for row in done.to_dict("records")], done.index, dtype=object))
-    done = done[done.key.isin(medians.index)]
-    return done.assign(time=done.key.map(medians).astype(float))
+    times = rows.key.map(timed.groupby("implementation").time.median()).astype(float)
+    return finished(rows.assign(time=times.where(rows.time.notna())))
 
 
 def _reached(rows):
-    """(limit, the fastest row that meets it); a row that is the fastest for several is given once, with the smallest
+    """[(limit, the fastest row that meets it)]; a row that is the fastest for several is given once, with the smallest
     limit that it meets."""
-    last = None
-    for limit in LIMITS:
-        best = _fastest(rows, limit)
-        if best is None:
-            return
-        if best.key != last:
-            yield min(one for one in LIMITS if best.error <= one), best
-        last = best.key
+    best = {one.key: one for one in (_fastest(rows, limit) for limit in LIMITS) if one is not None}
+    return [(min(limit for limit in LIMITS if one.error <= limit), one) for one in best.values()]
 
 
 def _fastest(rows, error):
@@ -135,8 +119,7 @@ def unreached(rows, error):
         return "none of it takes part"
     done = finished(rows)
     if done.empty:
-        counts = rows.status.value_counts()
-        return "lost: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+        return "lost: " + ", ".join(f"{count} {status}" for status, count in rows.status.value_counts().items())
     if (done.error <= error).any():
         return "not timed in the rounds"
     return f"its smallest error is {done.error.min():.2g} m"

@@ -10,8 +10,7 @@ from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import subject_of
 
 COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7", "dart": "#56B4E9", "ida": "#B8860B"}
-NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART",
-         "ida": "SUNDIALS IDA"}
+NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART", "ida": "SUNDIALS IDA"}
 LINES = {"chains": {"color": "black", "linewidth": 2.2}, "fronts": {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 1.5))},
          "library": {"color": "#5B3A9E", "linewidth": 1.8}, "paper": {"color": "#8A8A00", "linewidth": 1.4, "linestyle": (0, (1, 1))}}
 HEADROOM = 0.16  # share of the height that runs which lost the motion have for themselves
@@ -25,7 +24,6 @@ def draw(tables, view):
 
 
 def one_figure(tables, subjects, own):
-    """The figure of some subjects."""
     if not subjects:
         return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
@@ -40,7 +38,7 @@ def one_figure(tables, subjects, own):
     grid[0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
     figure.supxlabel("computation for a simulated second, s", fontsize=10)
     figure.supylabel("largest position error, m", fontsize=10)
-    below(figure, 4, _key(engines.engine.unique()))
+    below(figure, 4, [*_key(engines.engine.unique())])
     figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
     return figure
 
@@ -49,8 +47,7 @@ def _panel(axes, engines, ours, own):
     for engine, rows in engines[~engines.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
         place, (colour, marker) = place_of(engine), look(engine)
         done = finished(rows)
-        axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3,
-                  markeredgewidth=0)
+        axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3, markeredgewidth=0)
         front = rows.loc[pareto(rows)]
         axes.plot(front.time, front.error, color=colour, marker=marker, markersize=5.5, linewidth=1.6,
                   markeredgecolor="white", markeredgewidth=0.6)
@@ -79,10 +76,9 @@ def title(engine):
 
 
 def _key(engines):
-    entries = [Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items()]
+    yield from (Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items())
     for engine in sorted((one for one in engines if not one.endswith(NATIVE)), key=place_of):
         colour, marker = look(engine)
-        entries.append(Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front"))
-    return [*entries, Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none",
-                             label="other runs of an engine"),
-            Line2D([], [], color=GREY, marker="x", linestyle="none", label="upper edge: lost the motion")]
+        yield Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front")
+    yield Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none", label="other runs of an engine")
+    yield Line2D([], [], color=GREY, marker="x", linestyle="none", label="upper edge: lost the motion")

@@ -12,16 +12,14 @@ def context(tables, view):
     engines, table = tables["engines"], tables["equal_error"]
     names = list(dict.fromkeys(engines.engine[engines.status != "unavailable"]))
     answers = [one["text"] for one in sentences.answers(tables, view)] if len(table) else []
-    return {"answers": answers, "says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
-            "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
-            "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": {
-                name: subject_of(name).title for name in dict.fromkeys(engines.subject)},
+    return {"answers": answers, "says": [*sentences.of_engines(engines)], "measured": not table.empty, "setting_up": SETTING_UP,
+            "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()}, "duration": DURATION_S,
+            "engines": {name: title(name) for name in names}, "title": title, "value": sentences.value,
+            "subjects": {name: subject_of(name).title for name in dict.fromkeys(engines.subject)},
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},
-            "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")),
-            "unreached": unreached(table), "comparisons": {subject: rows_of(rows) for subject, rows in
-                                                           table.groupby("subject", sort=False)},
+            "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")), "unreached": unreached(table),
+            "comparisons": {subject: rows_of(rows) for subject, rows in table.groupby("subject", sort=False)},
             "native": rows_of(tables["native"]), "native_says": sentences.of_native(tables["native"]),
-            "value": sentences.value, "title": title,
             "dropped": {name: int((tables[name].status == "dropped").sum()) for name in ("engines", "ours", "rounds")}}
 
 
@@ -34,5 +32,4 @@ def summary(rows, engines):
 def unreached(table):
     """[(side, subject, reason, errors)] of what ours does not reach, by what is the matter."""
     rows = table[table.ratio.isna() & (table.reason != "none of it takes part")]
-    return [(*key, sorted(set(errors), reverse=True)) for key, errors in
-            rows.groupby(["side", "subject", "reason"], sort=False).engine_error]
+    return [(*key, sorted(set(errors), reverse=True)) for key, errors in rows.groupby(["side", "subject", "reason"], sort=False).engine_error]

@@ -11,44 +11,34 @@ NATIVE = "+native"                               # of an engine that was built w
 
 
 def row(record):
-    """`name`: the engine or implementation; `time`: s of computation for a simulated second."""
-    subject = subject_of(record.column)
+    """`name`: the engine or implementation; `time`: s of computation for a simulated second; `error`: NaN in rounds; `key`: what a run has
+    in common with its repetition there."""
+    subject, (status, reason) = subject_of(record.column), of_run(record)
     engine = PurePath(record.cell["program"]).name.startswith("engine_")
-    found = (_engine if engine else _ours)(record, subject)
-    status, reason = of_run(record)
-    found |= {"subject": subject.name, "status": status, "reason": reason, "round": record.cell["number"],
-              "side": ENGINE if engine else OURS, "record": record.name}
-    found["error"] = max(found["error"], FLOOR) if status in FINISHED and found["error"] is not None else math.nan
-    if status not in FINISHED:
-        return found
-    return found | ({} if math.isfinite(found["error"]) or record.role == ROUND else
-                    {"status": "diverged", "reason": "its position error is not finite"})
+    error = subject.error(record, engine) if status in FINISHED and record.role != ROUND else None
+    error = math.nan if error is None else max(error, FLOOR)
+    if status in FINISHED and record.role != ROUND and not math.isfinite(error):
+        status, reason = "diverged", "its position error is not finite"
+    found, side = (_engine if engine else _ours)(record), ENGINE if engine else OURS
+    return found | {"subject": subject.name, "status": status, "reason": reason, "error": error, "round": record.cell["number"], "side": side,
+                    "key": "|".join([side, *(f"{found[name]}" for name in ("name", "setting", "over", "value"))]), "record": record.name}
 
 
-def _engine(record, subject):
+def _engine(record):
     words, output = record.cell["settings"], record.output
     pairs = dict(word.split("=", 1) for word in words if "=" in word)
     over = next((key for key in OVER if key in pairs), "")
     name = PurePath(record.cell["program"]).name.removeprefix("engine_")
-    whole = output.get("status") in FINISHED
     return {"name": name + (NATIVE if "build-engines" in record.cell["program"] else ""),
             "setting": ", ".join(f"{key} {text}" for key, text in pairs.items() if key != over), "over": over,
-            "value": float(pairs[over]) if over else None, "time": output.get("time"), "version": output.get("version"),
-            "error": subject.engine_error(output) if whole and record.role == ENGINE else None}
+            "value": float(pairs[over]) if over else None, "time": output.get("time"), "version": output.get("version")}
 
 
-def _ours(record, subject):
+def _ours(record):
     output = record.output
     options = {key: value for key, value in record.options.items() if key not in ("duration", "judge-every", "repeats")}
     step, scheme = float(options.pop("step")), options.pop("scheme")
     times = output.get("least_us") or output.get("step_us") or {}
-    whole = output.get("status") in FINISHED
     return {"name": record.cell["contenders"][0], "over": "step", "value": step,
             "setting": ", ".join([scheme, *(f"{key} {value}".strip() for key, value in options.items())]),
-            "time": 1e-6 * times["mean"] * output["steps"] / output["duration"] if times else None,
-            "error": subject.our_error(record) if whole and record.role == OURS else None}
-
-
-def key(one):
-    """What a run has in common with its repetition in the rounds; `one`: a row."""
-    return f"{one['side']}|{one['name']}|{one['setting']}|{one['over']}|{one['value']:g}"
+            "time": 1e-6 * times["mean"] * output["steps"] / output["duration"] if times else None}

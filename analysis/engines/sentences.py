@@ -1,5 +1,4 @@
 # What the front page says of the engines, computed from the tables.
-
 from analysis.core.outcomes import FINISHED, finished
 from analysis.core.text import between, number, span
 from analysis.engines.equal_error import SIDES
@@ -13,10 +12,8 @@ def answers(tables, view):
     if table.empty:
         reasons = dict.fromkeys(tables["engines"].reason)
         return [{"text": f"Not measured: {'; '.join(one for one in reasons if one) or 'no engine took part'}.", "anchor": ""}]
-    found = [{"text": text, "anchor": "equal"} for text in map(lambda side: of_side(table, side), SIDES) if text]
-    found += [{"text": text, "anchor": "equal"} for text in of_andrews(table)]
-    flags = of_native(tables["native"])
-    return found + ([{"text": flags, "anchor": "native"}] if flags else [])
+    found = {text: "equal" for text in (*(of_side(table, side) for side in SIDES), *of_andrews(table))} | {of_native(tables["native"]): "native"}
+    return [{"text": text, "anchor": anchor} for text, anchor in found.items() if text]
 
 
 def of_side(table, side):
@@ -60,9 +57,8 @@ def of_native(native):
     """How much it matters that packages are built for any processor; "" if it was not measured."""
     if native.empty:
         return ""
-    least, most = (native.loc[place] for place in (native.ratio.idxmin(), native.ratio.idxmax()))
     return (f"{title(native.engine.iloc[0])} from Debian takes {number(native.ratio.median(), 3)} times as long as built "
-            f"with our flags (median of {len(native)} runs, {number(least.ratio, 3)} to {number(most.ratio, 3)}).")
+            f"with our flags (median of {len(native)} runs, {number(native.ratio.min(), 3)} to {number(native.ratio.max(), 3)}).")
 
 
 def value(over, amount):
@@ -72,10 +68,9 @@ def value(over, amount):
 
 def of_engines(engines):
     """A sentence for each engine: what it reaches, what it loses."""
-    said = []
     for engine, rows in engines.groupby("engine", sort=False):
         if (rows.status == "unavailable").all():
-            said.append(f"{title(engine)}: left out, {rows.reason.iloc[0]}.")
+            yield f"{title(engine)}: left out, {rows.reason.iloc[0]}."
             continue
         made = rows[~rows.status.isin(NOT_MADE)]
         lost = made[~made.status.isin(FINISHED)]
@@ -84,5 +79,4 @@ def of_engines(engines):
         best = "none finished" if done.empty else (
             f"{number(done.error.min(), 2)} m is the smallest error ({subject_of(done.loc[done.error.idxmin()].subject).title})")
         version = next((one for one in made.version if one), "")
-        said.append(f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}.")
-    return said
+        yield f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}."

@@ -13,13 +13,13 @@ import numpy
 from scipy.integrate import solve_ivp
 
 from analysis.engines import andrews
+from study.scenes.mechanics import double_pendulum
 
 DURATION_S, REGULAR_S, PENDULUM_S = 5.0, 0.6, 2.0
 PENDULUM, ANDREWS = "double-pendulum", "andrews"
 ANDREWS_SCENE = "harness/scenes/problems/a03_andrews.json"
 SOLVERS = ("ida",)  # who is given our equations, and so any scene; engines have models of rods alone
 FLOOR = 1e-13      # m: no error is shown below it; the references' own are below 2e-14
-GRAVITY = 9.81
 LONGEST = 1e-3     # s, a step of the integration of the double pendulum: rounding alone is left
 
 
@@ -36,33 +36,20 @@ class Subject:
     judged: float = 1e-2  # s: errors are evaluated so often, as the engines' programs do
     steps: tuple = (2e-2, 1e-5)  # s, the longest and the shortest of ours
 
-    @property
-    def place(self):
-        """In tables and figures."""
-        return self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops
+    place = property(lambda self: (self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops))  # in tables and figures
 
-    def asks(self, engine):
-        """Whether an engine's program models it."""
-        return self.name != ANDREWS or engine in SOLVERS
-
-    def engine_error(self, output):
-        """Position error of an engine's run, m."""
+    def error(self, record, engine):
+        """Position error of a run, of an engine's or of ours, m: the largest distance of a point from where it should be."""
+        output, series = record.output, record.series
         if self.loops:
             return output["position_error_max"]
-        places = numpy.array(output["outputs"]["points"], dtype=float)
-        return self.distance(numpy.array(output["outputs"]["t"]),
-                             places.reshape(-1, len(self.points), 2).transpose(1, 2, 0))  # from time, point, axis
-
-    def our_error(self, record):
-        """Position error of a run of ours, m."""
-        if self.loops:
-            return record.output["position_error_max"]
-        places = [[record.series[f"{point}.{axis}"] for axis in "xy"] for point in self.points]
-        return self.distance(numpy.array(record.series["t"], dtype=float), numpy.array(places, dtype=float))
-
-    def distance(self, times, places):
-        """Largest distance of `places` (point, axis, time) from where they should be."""
-        return float(numpy.hypot(*(places - _known(self.name, tuple(times))).swapaxes(0, 1)).max())
+        if engine:
+            times, places = output["outputs"]["t"], numpy.array(output["outputs"]["points"], dtype=float)
+            places = places.reshape(-1, len(self.points), 2).transpose(1, 2, 0)  # from time, point, axis
+        else:
+            times, places = series["t"], [[series[f"{point}.{axis}"] for axis in "xy"] for point in self.points]
+        away = numpy.array(places, dtype=float) - _known(self.name, tuple(times))
+        return float(numpy.hypot(*away.swapaxes(0, 1)).max())
 
 
 OTHERS = {one.name: one for one in (
@@ -80,16 +67,13 @@ def subject_of(name):
                    REGULAR_S if regular else DURATION_S, ("--loops", loops), regular, loops)
 
 
-@functools.cache
-def _known(name, times):
-    """Where the points of a subject should be; most runs are judged at the same times."""
-    return (andrews.positions if name == ANDREWS else positions)(numpy.array(times))
+# Where the points of a subject should be; most runs are judged at the same times.
+_known = functools.cache(lambda name, times: (andrews.positions if name == ANDREWS else positions)(numpy.array(times)))
 
 
 def positions(times, longest=LONGEST):
-    """Of B and C at `times`: (point, axis, time). Angles from +x, rods of 1 m, 1 kg and 1.5 m, 1.5 kg."""
-    angles = _motion(longest)(times)
-    first, second = (numpy.array([numpy.cos(angle), numpy.sin(angle)]) for angle in angles[:2])
+    """Of B and C at `times`: (point, axis, time). Rods of 1 m, 1 kg and 1.5 m, 1.5 kg, released along +x."""
+    first, second = (numpy.array([numpy.sin(angle), -numpy.cos(angle)]) for angle in _motion(longest)(times)[:2])
     return numpy.array([first, first + 1.5 * second])
 
 
@@ -97,17 +81,5 @@ def positions(times, longest=LONGEST):
 def _motion(longest):
     """The state at any times; between its steps it is interpolated in the seventh order. A little beyond the end, where
     the last sample of a rounded step may lie."""
-    return solve_ivp(_rates, (0, 1.05 * PENDULUM_S), [0.0, 0.0, 0.0, 2.0], "DOP853", rtol=1e-13, atol=1e-14,
-                     max_step=longest, dense_output=True).sol
-
-
-def _rates(_, state):
-    first, second, first_rate, second_rate = state
-    coupling = 1.5 * 1.0 * 1.5 / 2  # m2 L1 L2 / 2
-    cosine, sine = math.cos(first - second), math.sin(first - second)
-    a, b, c = 1 / 3 + 1.5, coupling * cosine, 1.5 * 1.5**2 / 3
-    right = (-coupling * sine * second_rate**2 - GRAVITY * (0.5 + 1.5) * math.cos(first),
-             coupling * sine * first_rate**2 - GRAVITY * 1.5 * 0.75 * math.cos(second))
-    determinant = a * c - b * b
-    return [first_rate, second_rate, (c * right[0] - b * right[1]) / determinant,
-            (a * right[1] - b * right[0]) / determinant]
+    return solve_ivp(double_pendulum((1.0, 1.5), (1.0, 1.5)), (0, 1.05 * PENDULUM_S), [math.pi / 2, math.pi / 2, 0.0, 2.0], "DOP853",
+                     rtol=1e-13, atol=1e-14, max_step=longest, dense_output=True).sol

@@ -5,17 +5,16 @@ from analysis.engines import equal_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import subject_of
 
-COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "record")
+COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "key", "record")
 
 
 def build(records, view):
     found = {role: frame([row(one) for one in records if one.role == role]) for role in (ENGINE, OURS, ROUND)}
     engines, ours, rounds = map(_sorted, found.values())
-    compared = equal_error.table(engines, ours, rounds, view.registry.own)
-    beside = equal_error.native(engines, rounds)
-    return {"engines": engines.drop(columns=["side", "round"]).rename(columns={"name": "engine"}),
-            "ours": ours.drop(columns=["side", "round", "over"]).rename(columns={"name": "implementation", "value": "step"}),
-            "rounds": rounds[list(COLUMNS)].drop(columns="error"), "equal_error": compared, "native": beside}
+    return {"engines": engines.drop(columns=["side", "round", "key"]).rename(columns={"name": "engine"}),
+            "ours": ours.drop(columns=["side", "round", "over", "key"]).rename(columns={"name": "implementation", "value": "step"}),
+            "rounds": rounds[list(COLUMNS)].drop(columns=["error", "key"]), "native": pandas.DataFrame(equal_error.native(engines, rounds)),
+            "equal_error": pandas.DataFrame(equal_error.table(engines, ours, rounds, view.registry.own))}
 
 
 def _sorted(table):

@@ -11,6 +11,7 @@ NOT_RUN = ("unsupported", "refused", "excluded", "dropped", "unavailable")
 KINDS = ("silent", "other", "crashed", "out-of-memory", "timeout", "diverged", "wrong-branch", "not-converged", "degraded", "unjudged", "ok",
          "refused")  # what a row is shown as, the worst first
 REFERENCE = "reference"  # the role of its runs
+FAR = 0.3  # clearance from a change point, beyond which nothing jumps
 
 
 def table(records, registry):
@@ -19,44 +20,40 @@ def table(records, registry):
     known = {(cell.name, f"{cell.step:g}"): place for place, cell in enumerate(every)}
     alone = {cell.name: cell for cell in every}  # a cell with a reference is the only one of its scene
     settings = {setting.file_name: setting.name for some in (*(cell.settings for cell in every), cells.OTHERS) for setting in some}
-    implementations = list(registry.variants)
-    references, truths, found = {}, {}, []
+    roles, names = list(settings), list(registry.variants)
+    references, truths, runs, rows = {}, {}, [], []
     for record in records:
-        scene = judge.scene_of(record)
+        scene, step = record.cell["scene"], f"{record.option('--step'):g}"
+        scene = scene if scene.startswith("harness/") else scene.rpartition("/")[2].removesuffix(".json")  # that, or a file of the set's own
         if record.role == REFERENCE and scene in alone:
-            references.setdefault(scene, {})[round(alone[scene].step / record.option("--step"))] = record
-        elif record.role not in settings or (scene, f"{record.option('--step'):g}") not in known:
+            references.setdefault(scene, {})[round(alone[scene].step / float(step))] = record
+        elif record.role not in settings or (scene, step) not in known:
             raise StudyError(f"{record.name}: its cell is none of the battery: the set is of another state of it")
-    for record in records:
-        if record.role != REFERENCE:
-            place = known[judge.scene_of(record), f"{record.option('--step'):g}"]
-            cell = every[place]
-            name = record.cell["contenders"][0]
-            order = place, list(settings).index(record.role), implementations.index(name)
-            times = record.series.get("t", [])
-            same = place, len(times)  # all runs of a cell are judged at the same times
-            if same not in truths:
-                motion = judge.true_motion(cell, references.get(cell.name, {}), times)
-                truths[same] = judge.allowed(cell, motion[0]), *motion
-            found.append((order, _row(record, cell, name, settings[record.role], *truths[same])))
-    return pandas.DataFrame([row for _, row in sorted(found, key=lambda one: one[0])])
+        else:
+            runs.append((known[scene, step], roles.index(record.role), names.index(record.cell["contenders"][0]), record))
+    for place, _, _, record in sorted(runs, key=lambda one: one[:3]):
+        cell, times = every[place], record.series.get("t", [])
+        same = place, len(times)  # all runs of a cell are judged at the same times
+        if same not in truths:
+            motion = judge.true_motion(cell, references.get(cell.name, {}), times)
+            truths[same] = judge.allowed(cell, motion[0]), *motion
+        rows.append(_row(record, cell, settings[record.role], *truths[same]))
+    return pandas.DataFrame(rows)
 
 
-def _row(record, cell, name, setting, limit, solutions, own, truth):
-    status, reason = of_run(record)
+def _row(record, cell, setting, limit, solutions, own, truth):
+    (status, reason), failed_at = of_run(record), record.output.get("failed_at")
+    beyond = limit + (own or 0.0)
+    error, since = judge.off(record, solutions, cell.length, beyond)
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
-    far = judge.apart(record, solutions, cell.length)
-    error = judge.error_of(record, far)
-    error = error if not reported > error else reported
-    beyond = limit + (own or 0.0)
-    since = judge.wrong_from(record, far, beyond)
-    harmless = judge.harmless(cell, record.output.get("failed_at"))
-    verdict = verdicts.verdict(status, error, beyond, since, harmless) if solutions and record.done and status not in NOT_RUN else ""
-    return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
-            "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,
-            "truth_error": own, "allowed": limit, "verdict": verdict, "near": cell.near,
-            "wrong_from": since, "steps": cell.steps, "step": cell.step,
+    error = reported if reported > error else error
+    jumps_nowhere = cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR
+    verdict = verdicts.verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
+        solutions and record.done and status not in NOT_RUN) else ""
+    return {"axis": cell.axis, "value": cell.label, "implementation": record.cell["contenders"][0], "setting": setting, "status": status,
+            "reason": reason, "failed_at": failed_at, "true_error": error, "truth": truth, "truth_error": own, "allowed": limit,
+            "verdict": verdict, "near": cell.near, "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
             "command": _shown(record.command) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
 

@@ -61,25 +61,15 @@ class Extreme:
         words = unicodedata.normalize("NFKD", words)  # a raised 2 becomes 2
         return "-".join("".join(c if c.isalnum() or c in "-+." else " " for c in words).split())
 
-    @property
-    def columns(self):
-        """Of its motion: those that are kept."""
-        return self.kept or self.motion.columns
+    columns = property(lambda self: self.kept or self.motion.columns)  # of its motion: those that are kept
+    loops = property(lambda self: self.motion.loops if self.motion else 1)
+    work = property(lambda self: self.loops * self.steps)  # what its runs cost, about: the cheap ones of equal worth come first
 
     @property
     def every(self):
         """Steps between two instants at which it is judged."""
         turns = self.step * self.steps / (2.0 * self.length**0.5)
         return max(1, self.steps // max(INSTANTS, round(TURN * turns)))
-
-    @property
-    def loops(self):
-        return self.motion.loops if self.motion else 1
-
-    @property
-    def work(self):
-        """What its runs cost, about: the cheap ones of equal worth come first."""
-        return self.loops * self.steps
 
     @property
     def place(self):
@@ -94,17 +84,16 @@ def _short(value):
     return f"{mantissa}e{int(power)}" if power else mantissa
 
 
-def _chain(axis, label, chain, **more):
-    return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
-
-
 def extremes():
     """All cells that are extreme in one respect, in the order of the picture."""
     return [*_of_chains(), *_constraints(), *_starts()]
 
 
+def _chain(axis, label, chain, **more):
+    return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
+
+
 def _of_chains():
-    """Sizes and settings, masses and lengths."""
     for loops, steps in SIZES.items():
         yield (_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
                Extreme("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps))
@@ -125,7 +114,8 @@ def _of_chains():
 
 def _constraints():
     for stiffness in (1e6, 1e8, 1e10, 1e12):
-        yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness))
+        spring = {"name": "spring", "between": ["B0", "B1"], "stiffness": stiffness, "length": 1.0}  # beside a coupler, at its free length
+        yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), Chain(2).document() | {"springs": [spring]})
         yield Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None, scenes.sprung_pendulum(stiffness), steps=800,
                       kept=("B.x", "B.y", "C.x", "C.y"))
     yield Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True))
@@ -135,7 +125,6 @@ def _constraints():
 
 
 def _starts():
-    """How it begins; denormal numbers."""
     flat, moving = math.pi / 2, math.sqrt(1 + 2 * Chain(2).k)  # as fast as four-bar:2 gets there
     # At 1 s the first one rests on a line again, and other motions become possible.
     yield _chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0), steps=600)
@@ -147,6 +136,7 @@ def _starts():
     tiny, short = 1e-310, 1e-160  # denormal numbers
     yield _chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,)))
     yield _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny)))
-    yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny))
+    yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), Chain(1).document() | {
+        "forces": [{"name": "push", "point": "B0", "force": [tiny, 0.0]}]})
     yield _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny))
     yield _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5), step=STEP * short**0.5)

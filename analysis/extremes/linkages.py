@@ -34,15 +34,8 @@ class Side:
 
 class Follower:
     """What a point adds: `joined`, (end, length) of each of its links, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
-    joined, load = (), None
-
-    @property
-    def links(self):
-        """(name, ends, length) each"""
-        return [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined]
-
-    def lists(self):
-        return {}
+    joined, load, lists = (), None, {}
+    links = property(lambda self: [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined])
 
     def clearance(self, at):
         """How far it is from its change point: for instance the sine of the angle between two links."""
@@ -82,6 +75,8 @@ class Slider(Follower):
 
     load = property(lambda self: self.name)
     joined = property(lambda self: [(self.end, self.length)])
+    lists = property(lambda self: {"masses": [{"point": self.name, "mass": 1.0}], "constraints": [
+        {"name": "slides", "type": "on_line", "point": self.name, "line": [self.foot, f"{self.foot}x"]}]})
 
     def place(self, at, angle):
         (x, y), level = at[self.end], at[self.foot][1]
@@ -89,10 +84,6 @@ class Slider(Follower):
 
     def clearance(self, at):
         return abs(at[self.name][0] - at[self.end][0]) / self.length
-
-    def lists(self):
-        return {"masses": [{"point": self.name, "mass": 1.0}],
-                "constraints": [{"name": "slides", "type": "on_line", "point": self.name, "line": [self.foot, f"{self.foot}x"]}]}
 
 
 @dataclass(frozen=True)
@@ -104,15 +95,13 @@ class Swing(Follower):
     length: float
 
     joined = property(lambda self: [(self.foot, self.length)])
+    lists = property(lambda self: {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]})
 
     def place(self, at, angle):
         return at[self.foot] + self.length * _unit(at[self.through] - at[self.foot])
 
     def clearance(self, at):
         return numpy.hypot(*(at[self.through] - at[self.foot])) / self.length
-
-    def lists(self):
-        return {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]}
 
 
 @dataclass(frozen=True)
@@ -135,11 +124,11 @@ class Wheel(Follower):
     load: str
     radius: float = 0.3
 
+    lists = property(lambda self: {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2,
+                                               "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]})
+
     def place(self, at, angle):
         return at[self.load] + numpy.array([[self.radius], [0.0]])
-
-    def lists(self):
-        return {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2, "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]}
 
 
 @dataclass(frozen=True)
@@ -157,18 +146,9 @@ class Linkage(Motion):
     truth = property(lambda self: "closed form" if self.driven else "closed form, its time by quadrature")
     accuracy = property(lambda self: 0.0 if self.driven else 1e-7)
     points = property(lambda self: ["B", *(one.name for one in self.followers)])
-
-    @property
-    def links(self):
-        return [("crank", (self.feet[0][0], "B"), self.crank), *(link for one in self.followers for link in one.links)]
-
-    @property
-    def shortest(self):
-        return min(length for _, _, length in self.links)
-
-    @property
-    def columns(self):
-        return tuple(f"{name}.{axis}" for name in self.points for axis in "xy")
+    links = property(lambda self: [("crank", (self.feet[0][0], "B"), self.crank), *(link for one in self.followers for link in one.links)])
+    shortest = property(lambda self: min(length for _, _, length in self.links))
+    columns = property(lambda self: tuple(f"{name}.{axis}" for name in self.points for axis in "xy"))
 
     def at(self, angle):
         """{point: (x, y)} at crank angles."""
@@ -179,16 +159,15 @@ class Linkage(Motion):
         return found
 
     def angles(self, times):
-        times = numpy.asarray(times, dtype=float)
-        return self.start + self.rate * times if self.driven or not len(times) else _turned(self, float(numpy.ceil(times[-1])))(times)
+        return self.start + self.rate * times if self.driven else _turned(self, float(numpy.ceil(times[-1])))(times)
 
     def solutions(self, times):
-        at, way = self.at(self.angles(times)), self.carried * numpy.asarray(times, dtype=float)
+        at, way = self.at(self.angles(times)), self.carried * times
         return [{f"{name}.{axis}": at[name][i] + way * (axis == "x") for name in self.points for i, axis in enumerate("xy")}]
 
     def clearance(self, time):
         """From its nearest change point: the least of its points'."""
-        at = self.at(self.angles([time]))
+        at = self.at(self.angles(numpy.array([time])))
         return min((float(numpy.min(one.clearance(at))) for one in self.followers), default=1.0)
 
     def energy(self, angle):
@@ -205,7 +184,6 @@ class Linkage(Motion):
         return {"name": name, "position": [x, y], "driven": {"x": {"polynomial": [x, self.carried]}, "y": y}} if self.carried else fixed(name, x, y)
 
     def document(self):
-        """The scene as JSON."""
         at = self.at(numpy.array([self.start + 1j * IMAGINARY]))
         plates = {one.ends: one for one in self.followers if isinstance(one, Plate)}
         lines = {*[self.feet[0][0]] * self.driven, *(one.foot for one in self.followers if isinstance(one, Slider))}
@@ -221,7 +199,7 @@ class Linkage(Motion):
             else:
                 found["rods"].append(rod(name, *ends, length=length))
         for one in self.followers:
-            for key, more in one.lists().items():
+            for key, more in one.lists.items():
                 found[key] += more
         if self.driven:
             foot = self.feet[0][0]

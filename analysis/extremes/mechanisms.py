@@ -1,45 +1,32 @@
 # More mechanisms whose motion is known: with a light part, with speeds that do not agree, and the standard problems.
-import math
 from dataclasses import dataclass
 
 import numpy
-from scipy.integrate import solve_ivp
 
 from analysis.extremes import scenes
 from analysis.extremes.linkages import Dyad, Linkage, Side
 from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod
+from study.scenes.mechanics import double_pendulum, integrate
 from study.scenes.references import CLOSED, KNOWN
 
 
 def _of_rods(motion, *rods):
     """The scene of rods that hang from A, at rest where a motion of B and C begins."""
-    at = {key: float(values[0]) for key, values in motion.solutions([0.0])[0].items()}
+    at = {key: float(values[0]) for key, values in motion.solutions(numpy.zeros(1))[0].items()}
     return {"gravity": [0.0, -GRAVITY], "points": [
         fixed("A", 0, 0), *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")], "rods": list(rods)}
 
 
 @dataclass(frozen=True)
 class LightEnd(Motion):
-    """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line. Its two equations of
-    motion in the angles from the downward vertical, that of the lower rod divided by its mass, are integrated."""
+    """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line."""
     mass: float                 # kg, of the lower rod
 
     truth, accuracy = "equations of its own, integrated", 1e-8
-    start, tolerance = 1.0, 1e-12  # rad
+    start = 1.0  # rad
 
     def solutions(self, times):
-        def derivative(_, state):
-            a, b, da, db = state.tolist()  # numbers of Python's own, ten times as fast
-            sine, cosine = math.sin(a - b), math.cos(a - b)
-            (p, q), (r, s) = (1 / 3 + self.mass, self.mass / 2 * cosine), (cosine / 2, 1 / 3)
-            upper = -self.mass / 2 * sine * db**2 - GRAVITY * (1 / 2 + self.mass) * math.sin(a)
-            lower = sine / 2 * da**2 - GRAVITY / 2 * math.sin(b)
-            return [da, db, (s * upper - q * lower) / (p * s - q * r), (p * lower - r * upper) / (p * s - q * r)]
-        times = numpy.asarray(times, dtype=float)
-        if not len(times):
-            return [dict.fromkeys(self.columns, times)]
-        a, b = solve_ivp(derivative, (0, max(times[-1], 1e-9)), [self.start, self.start, 0, 0], "DOP853", times,
-                         rtol=self.tolerance, atol=self.tolerance).y[:2]
+        a, b, _, _ = integrate(double_pendulum((1, 1), (1, self.mass)), times, [self.start, self.start, 0, 0])
         x, y = numpy.sin(a), -numpy.cos(a)
         return [{"B.x": x, "B.y": y, "C.x": x + numpy.sin(b), "C.y": y - numpy.cos(b)}]
 
@@ -56,7 +43,7 @@ class Damped(Motion):
 
     def solutions(self, times):
         decay = 3 * self.damping  # over the inertia
-        angle = self.start - self.rate * numpy.expm1(-decay * numpy.asarray(times, dtype=float)) / decay
+        angle = self.start - self.rate * numpy.expm1(-decay * times) / decay
         return [{"B.x": numpy.cos(angle), "B.y": numpy.sin(angle)}]
 
     def document(self):
@@ -110,7 +97,6 @@ class TwoDrives(Motion):
     linkage = Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),))
 
     def solutions(self, times):
-        times = numpy.asarray(times, dtype=float)
         both = [self.linkage.at(self.linkage.start + times + share * times**2) for share in (0.0, self.share)]
         return [{f"{name}.{axis}": at[name][i] for name in "BC" for i, axis in enumerate("xy")} for at in both]
 
@@ -129,6 +115,4 @@ class Standard(Motion):
     accuracy = property(lambda self: 0.0 if self.known in CLOSED else 1e-8)
 
     def solutions(self, times):
-        times = numpy.asarray(times, dtype=float)
-        found = KNOWN[self.known](times) if len(times) else {}
-        return [{column: values for column, values in found.items() if column.split(".")[-1] in ("x", "y", "z")}]
+        return [{column: values for column, values in KNOWN[self.known](times).items() if column.endswith((".x", ".y", ".z"))}]

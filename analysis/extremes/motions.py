@@ -1,4 +1,4 @@
-# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it.
+# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it; points and rods of scenes.
 #
 # All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod
 # of mass m turns about its foot: m length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with
@@ -10,22 +10,20 @@
 from dataclasses import dataclass
 
 import numpy
-from scipy.special import ellipj, ellipkinc
 
-GRAVITY = 9.81  # m/s^2
+from study.scenes.mechanics import GRAVITY
+from study.scenes.references import turning
+
 POINTS = 6      # of a chain, whose places are kept, at most: all of them up to five loops
 
 
 class Motion:
-    """A mechanism whose motion is known. `solutions(times)`: the motions that are possible, each {column of a trajectory: values};
+    """A mechanism whose motion is known. `solutions(times)`, at some times: the motions that are possible, each {column of a trajectory: values};
     `document()`: its scene as JSON."""
     loops, shortest = 1, 1.0              # shortest: m, of its links
     truth, accuracy = "closed form", 0.0  # what `solutions` are; their error beside rounding, m
 
-    @property
-    def columns(self):
-        """Of a trajectory: those that judge it."""
-        return tuple(self.solutions([0.0])[0])
+    columns = property(lambda self: tuple(self.solutions(numpy.zeros(1))[0]))  # of a trajectory: those that judge it
 
     def clearance(self, time):
         """How far it is from a change point, where anything may jump; 0 where nobody knows."""
@@ -33,12 +31,10 @@ class Motion:
 
 
 def fixed(name, x, y):
-    """A point of a scene."""
     return {"name": name, "position": [x, y], "fixed": True}
 
 
 def rod(name, first, second, mass=1.0, length=1.0):
-    """A rod of a scene."""
     return {"name": name, "between": [first, second], "mass": mass, "length": length}
 
 
@@ -54,44 +50,17 @@ class Chain(Motion):
     rate: float = 1.0           # rad/s, at t = 0, not negative
 
     truth = "exact"
-
-    @property
-    def shortest(self):
-        return self.length
-
-    @property
-    def masses(self):
-        """(of the rods, of the couplers), kg"""
-        return self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops
-
-    @property
-    def feet(self):
-        """x of the ground points, m"""
-        return self.offset + self.length * numpy.arange(self.loops + 1)
+    shortest = property(lambda self: self.length)
+    masses = property(lambda self: (self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops))  # kg
+    feet = property(lambda self: self.offset + self.length * numpy.arange(self.loops + 1))  # x of the ground points, m
 
     @property
     def k(self):
         rods, couplers = map(sum, self.masses)
         return self.gravity / self.length * (rods / 2 + couplers) / (rods / 3 + couplers)
 
-    def phi(self, times):
-        """(sin phi, cos phi) at `times`; psi = phi - pi is the angle from the downward vertical."""
-        k, half = self.k, (self.angle - numpy.pi) / 2
-        bottom = self.rate**2 + 4 * k * numpy.cos(self.angle / 2)**2  # psi'^2 where the energy is kinetic
-        if self.rate == 0 and (k == 0 or abs(numpy.sin(self.angle)) < 1e-12):
-            return numpy.full_like(times, numpy.sin(self.angle)), numpy.full_like(times, numpy.cos(self.angle))
-        if bottom > 4 * k:  # turns over: sin(psi / 2) = sn
-            parameter = 4 * k / bottom
-            sn, cn, _, _ = ellipj(ellipkinc(half, parameter) + bottom**0.5 * times / 2, parameter)
-        else:               # swings: sin(psi / 2) = kappa sn
-            kappa = (bottom / (4 * k))**0.5
-            start = ellipkinc(numpy.arctan2(numpy.sin(half), self.rate / (2 * k**0.5)), kappa**2)
-            sn, _, cn, _ = ellipj(start + k**0.5 * times, kappa**2)
-            sn = kappa * sn
-        return -2 * sn * cn, 2 * sn**2 - 1
-
     def solutions(self, times):
-        sine, cosine = self.phi(numpy.asarray(times, dtype=float))
+        sine, cosine, _ = turning(times, self.k, self.angle, self.rate)
         return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
             ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
 
@@ -120,6 +89,5 @@ class Flat(Chain):
     def solutions(self, times):
         lone = Chain(1, self.length, self.gravity, self.rods, (1e-300,), angle=self.angle, rate=0.0)
         [swing] = lone.solutions(times)
-        still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times),
-                 "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
+        still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times), "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]

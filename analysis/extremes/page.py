@@ -14,7 +14,6 @@ def context(tables, view):
 
 
 def _battery(table):
-    """None where there is nothing to show."""
     runs, extreme = verdicts.judged(table), battery.extreme(table)
     if table.empty:
         return None
@@ -45,7 +44,6 @@ def nobody(extreme):
 
 
 def left_out(table):
-    """What was not run and why."""
     found = [f"Left out: {', '.join(dict.fromkeys(rows.implementation))} in {', '.join(dict.fromkeys(rows.axis + ' ' + rows.value))} ({reason})."
              for reason, rows in table[table.status == "excluded"].groupby("reason", sort=False)]
     dropped = int((table.status == "dropped").sum())
@@ -56,11 +54,8 @@ def _pivots(table, claims):
     lost, table = [f"{row.status}: {row.reason}" for row in table[table.status != "ok"].itertuples()], table[table.status == "ok"]
     if table.empty:
         return {"lost": lost, "said": []}
-    found = []
-    for strategy, rows in table.groupby("strategy", sort=False):
-        worst = rows.loc[rows.error_worst.idxmax()]
-        found.append(f"{strategy}: worst error {number(worst.error_worst, 2)} ({worst.sequence}, {worst.form} form, "
-                     f"{worst.pivoting} pivots).")
+    found = [f"{one.strategy}: worst error {number(one.error_worst, 2)} ({one.sequence}, {one.form} form, {one.pivoting} pivots)."
+             for one in table.loc[table.groupby("strategy", sort=False).error_worst.idxmax()].itertuples()]
     found += [f"With default pivots a factorization and solve of {strategy} takes {rows.median():.2f} times that of refactor "
               f"(median over the sequences; {rows.min():.2f} to {rows.max():.2f})." for strategy, rows in overhead(table).items()]
     return {"lost": lost, "said": found, "rows": table.to_dict("records"), "claims": claims.to_dict("records"), "matrices": int(table.matrices.max())}

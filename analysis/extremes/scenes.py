@@ -1,4 +1,4 @@
-# The scenes of the battery that are more than a chain of four-bars: springs, redundant rods, denormals.
+# The scenes of the battery that are more than a chain of four-bars: springs, redundant rods.
 from analysis.extremes.motions import GRAVITY, Chain, fixed, rod
 
 
@@ -6,12 +6,6 @@ def unlike_masses(loops, ratio):
     """Every second rod and every second coupler has `ratio` kg, the others 1 kg."""
     masses = tuple(ratio if i % 2 else 1.0 for i in range(loops + 1))
     return Chain(loops, rods=masses, couplers=masses[:-1])
-
-
-def sprung_loop(stiffness):
-    """A spring beside a coupler of two loops, at its free length: the motion is that of the loops alone."""
-    return Chain(2).document() | {"springs": [
-        {"name": "spring", "between": ["B0", "B1"], "stiffness": stiffness, "length": 1.0}]}
 
 
 def sprung_pendulum(stiffness):
@@ -41,8 +35,3 @@ def shifted_rod(shift):
     document["points"].append(fixed("A", shift, 0))
     document["rods"].append(rod("third", "A", "C", mass=0))
     return document
-
-
-def with_force(newton):
-    """One loop with a force on it."""
-    return Chain(1).document() | {"forces": [{"name": "push", "point": "B0", "force": [newton, 0.0]}]}

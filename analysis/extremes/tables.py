@@ -5,6 +5,7 @@ from analysis.core import timing
 from analysis.extremes import battery
 
 PLAIN = ("refactor", "default")  # strategy and pivots that times are over
+SAME = ("sequence", "form", "strategy", "pivoting", "matrices", "error_median", "repivotings")  # in all processes
 
 
 def build(records, view):
@@ -19,9 +20,8 @@ def _pivots(records):
     names = " ".join(record.name for record in done)
     rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
     claims = {}
-    for record in done:
-        for claim in record.output.get("claims", []):
-            claims[claim["claim"]] = claims.get(claim["claim"], True) and bool(claim["holds"])
+    for one in (claim for record in done for claim in record.output.get("claims", [])):
+        claims[one["claim"]] = claims.get(one["claim"], True) and bool(one["holds"])
     lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
     found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
     return {"pivots": pandas.DataFrame(found + lost),
@@ -29,13 +29,11 @@ def _pivots(records):
 
 
 def _over_processes(rows):
-    for (sequence, form), own in rows.groupby(["sequence", "form"], sort=False) if len(rows) else []:
+    for _, own in rows.groupby(["sequence", "form"], sort=False) if len(rows) else []:
         timed = own.assign(environment="own", status="ok", samples=[(time,) for time in own.time_us_median],
                            implementation=list(zip(own.strategy, own.pivoting)))
         for (strategy, pivoting), each in own.groupby(["strategy", "pivoting"], sort=False):
             found = timing.ratio(timed, (strategy, pivoting), PLAIN)
-            first = each.iloc[0]
-            yield {"sequence": sequence, "form": form, "strategy": strategy, "pivoting": pivoting,
-                   "matrices": first.matrices, "error_median": first.error_median, "error_worst": each.error_worst.max(skipna=False),
-                   "repivotings": first.repivotings, "time_us": each.time_us_median.median(), "processes": len(each),
-                   "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}
+            yield each.iloc[0][[*SAME]].to_dict() | {
+                "error_worst": each.error_worst.max(skipna=False), "time_us": each.time_us_median.median(), "processes": len(each),
+                "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}

@@ -105,9 +105,8 @@ def all_trials():
 
 def few(trials, standard, others):
     """[(trial, setting)]: first `standard` of the standard problems' runs, then a sample of `others` of the others; all with 0."""
-    runs = [(trial, setting) for trial in trials for setting in trial.settings]
-    known = [run for run in runs if run[0].axis in STANDARD]
-    rest = [run for run in runs if run[0].axis not in STANDARD]
+    known, rest = ([(trial, setting) for trial in trials if (trial.axis in STANDARD) == those for setting in trial.settings]
+                   for those in (True, False))
     return known[:standard or None] + (random.Random(1).sample(rest, min(others, len(rest))) if others else rest)
 
 
@@ -184,13 +183,11 @@ def _long():
 
 
 def _standard():
-    """Standard problems, examples and families at their own steps."""
     for scene, length in EXAMPLES.items():
         yield Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
                       kept=("all",), settings=FORMS, harmless=REGULAR)
     for one in read_list()[1]:
-        own = tuple((option, f"{value}") for option, value, usual in (("penalty", one.penalty, "auto"), ("tolerance", one.tolerance, "auto"),
-                                                                      ("max-passes", one.max_passes, 20)) if value != usual)
+        own = tuple(option for option in one.options if option not in (("penalty", "auto"), ("tolerance", "auto"), ("max-passes", "20")))
         yield Extreme(STANDARD[0], one.name, one.scene, None if one.known == EXTRAPOLATED else Standard(one.known), step=one.steps[0],
                       steps=round(one.duration / one.steps[0]), length=LINKS[one.name],
                       kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),

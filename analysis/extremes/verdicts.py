@@ -17,12 +17,10 @@ def verdict(status, error, limit, wrong_from, harmless):
 
 
 def judged(table):
-    """The runs that have a verdict."""
     return table[table.verdict.isin(ALL)]
 
 
 def counts(table):
-    """{verdict: runs}"""
     return {verdict: int((table.verdict == verdict).sum()) for verdict in ALL}
 
 
@@ -35,16 +33,13 @@ def by_setting(table):
     """{setting: (right runs, runs)} where more than the two forms was tried, of those who tried more; the best first."""
     runs = judged(table)
     more = runs[~runs.setting.isin([form.name for form in FORMS])][["axis", "value", "implementation"]].drop_duplicates()
-    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows))
-             for name, rows in runs.merge(more).groupby("setting", sort=False)}
+    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows)) for name, rows in runs.merge(more).groupby("setting", sort=False)}
     return dict(sorted(found.items(), key=lambda one: -one[1][0] / one[1][1]))
 
 
 def listed(table, verdict):
     """Runs of a verdict, those that are equal but for setting and implementation in one entry, with the worst of them."""
-    found = []
-    for (kind, mechanism, step), rows in table[table.verdict == verdict].groupby(["axis", "value", "step"], sort=False):
-        worst = rows.loc[rows.true_error.fillna(-1).idxmax()]
-        found.append({"kind": kind, "mechanism": mechanism, "step": step, "runs": len(rows), "settings": list(dict.fromkeys(rows.setting)),
-                      "commands": list(dict.fromkeys(rows.command))} | worst[["true_error", "wrong_from", "status", "reason"]].to_dict())
-    return found
+    return [{"kind": kind, "mechanism": mechanism, "step": step, "runs": len(rows), "settings": list(rows.setting.unique()),
+             "commands": list(rows.command.unique())} | rows.loc[
+                 rows.true_error.fillna(-1).idxmax(), ["true_error", "wrong_from", "status", "reason"]].to_dict()
+            for (kind, mechanism, step), rows in table[table.verdict == verdict].groupby(["axis", "value", "step"], sort=False)]

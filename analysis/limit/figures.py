@@ -3,8 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.patches import Patch
 
-from analysis.core.style import (ALTERNATIVES, GREY, MARKERS, Look, below, legend, line_each, missing, nothing, number_axis, panels,
-                                 size_ticks)
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, below, legend, line_each, missing, nothing, number_axis, panels, size_ticks
 from analysis.core.text import number
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT
@@ -52,8 +51,7 @@ def leaders(rows, own=()):
 
 def over_size(bounds, rows, look, own):
     """Above: µs a step; below: multiples of the limit code, with their intervals. `own`: as leaders() has it."""
-    figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4),
-                                              gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
+    figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
     if rows.empty:
         missing(times, "no size was timed")
         missing(multiples, "")
@@ -70,8 +68,7 @@ def over_size(bounds, rows, look, own):
         times.fill_between(mine.variables, mine.low_us, mine.high_us, color=style["color"], alpha=0.15, linewidth=0)
         multiples.plot(mine.variables, mine.multiple, **style)
         known = mine[(mine.multiple_low > 0) & (mine.multiple_high < numpy.inf)]
-        multiples.fill_between(known.variables, known.multiple_low, known.multiple_high, color=style["color"], alpha=0.15,
-                               linewidth=0)
+        multiples.fill_between(known.variables, known.multiple_low, known.multiple_high, color=style["color"], alpha=0.15, linewidth=0)
     times.set(title="N-four-bar, penalty form: the best variant of each library, and all code of our own", ylabel="time per step, µs")
     multiples.set_ylabel("multiple of the limit code")
     for axes, unit in ((times, ""), (multiples, "×")):

@@ -69,9 +69,8 @@ def _worst(what, sign, bound, rows, column, cases):
 
 def _verdict(sign, bound, value, low, high):
     low, high = (value, value) if numpy.isnan(low) or numpy.isnan(high) else (low, high)
-    if sign == LEAST:
-        return HELD if low >= bound else NOT_HELD if high < bound else OPEN
-    return HELD if high <= bound else NOT_HELD if low > bound else OPEN
+    low, high, bound = (low, high, bound) if sign == LEAST else (-high, -low, -bound)
+    return HELD if low >= bound else NOT_HELD if high < bound else OPEN
 
 
 def _growth(steps, form):
@@ -79,8 +78,7 @@ def _growth(steps, form):
     largest one's set-up."""
     rows = _fastest(steps[steps.variables >= GROWTH_FROM], "loops", "step_us", True).sort_values("variables")
     whole = len(rows) > 2 and rows.variables.iloc[-1] >= GROWTH_TO
-    what = {"a step's time": "step_us", "a pass's time": "pass_us", "memory": "memory_bytes"}
-    for name, column in what.items():
+    for name, column in (("a step's time", "step_us"), ("a pass's time", "pass_us"), ("memory", "memory_bytes")):
         row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
                "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
         if whole and rows[column].notna().all():

@@ -24,8 +24,8 @@ def _timed(rows):
 def by_scene(scenes):
     """[(scene, kind, n, dimension, rows)], the fastest first; also those that only a first look was taken at."""
     rows = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
-    found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), group.kind.iloc[0], group.variables.iloc[0],
-              group.dimension.iloc[0], group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
+    found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), *group[["kind", "variables", "dimension"]].iloc[0],
+              group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
     return sorted(found, key=lambda one: (KINDS.index(one[1]), one[3], one[2]))
 
 

@@ -19,8 +19,8 @@ def build(records, view):
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
-             "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
-             "sweeps": _sweeps(by_role.get("sweep", []))}
+             "steps": [], "scenes": [], "leads": [], "batches": [*_batches(by_role.get("batch", []))],
+             "sweeps": [*_sweeps(by_role.get("sweep", []))]}
     for role in (*FORMS, *KINDS):
         for scene, timed, cells, _ in contests(by_role, role):
             names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
@@ -44,12 +44,9 @@ def _leads(timed, cells, registry):
     """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
     rival = rival_of(timed, cells, registry)
     for name in (name for name in registry.variants if name in registry.own and name in cells):
-        cell = cells[name]
-        row = {"implementation": name, "rival": rival, "status": cell["status"],
-               "reason": cell["reason"], "record": cell["record"]}
+        row = {"implementation": name, "rival": rival} | {key: cells[name][key] for key in ("status", "reason", "record")}
         if not agreed(cells, [name]):
-            why = {"status": "dropped", "reason": "the gate was not asked, as the budget was spent"}
-            yield row | (why if cell["status"] == "ok" else {})
+            yield row | ({"status": "dropped", "reason": "the gate was not asked, as the budget was spent"} if row["status"] == "ok" else {})
         elif rival is None:
             yield row | {"status": "dropped", "reason": "no library was timed that the gate agrees with"}
         else:
@@ -60,14 +57,10 @@ def _leads(timed, cells, registry):
 def _batches(records):
     """A row for each scene, number of sets and implementation."""
     rows = pandas.DataFrame([row for record in records for row in _batch(record)])
-    if rows.empty:
-        return []
-    found = []
-    for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False):
+    for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False) if len(rows) else ():
         good, lost = group[group.status == "ok"], group[~group.status.isin(["ok", "dropped"])]
         first = lost.iloc[0] if len(lost) else group.iloc[0]
-        row = {"scene": scene, "sets": sets, "implementation": name, "status": first.status, "reason": first.reason,
-               "record": first.record}
+        row = {"scene": scene, "sets": sets, "implementation": name} | first[["status", "reason", "record"]].to_dict()
         if len(good) and lost.empty:
             sides = pandas.concat([good.assign(implementation=side, samples=[(time,) for time in good[f"{side}_us"]])
                                    for side in ("alone", "step")])
@@ -75,8 +68,7 @@ def _batches(records):
             row |= {"status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0],
                     "lanes": good.lanes.iloc[0], "step_us": median(good.step_us), "alone_us": median(good.alone_us),
                     "gain": gain.value, "low": gain.low, "high": gain.high, "least": good.gain.min(), "most": good.gain.max()}
-        found.append(row)
-    return found
+        yield row
 
 
 def _batch(record):
@@ -91,26 +83,22 @@ def _batch(record):
 
 def _sweeps(records):
     """A row for each scene and number of jobs."""
-    found = []
     for scene in dict.fromkeys(record.cell["scene"] for record in records):
         mine = [record for record in records if record.cell["scene"] == scene]
         good = [record for record in mine if record.done]
-        lost = next((record for record in mine if not record.done), None)
         known = {"scene": scene, "implementation": mine[0].cell["contenders"][0]}
         if not good:
-            found.append(known | {"status": lost.status, "reason": lost.reason, "record": lost.name})
+            yield known | {"status": mine[0].status, "reason": mine[0].reason, "record": mine[0].name}
             continue
         lanes = good[0].output["lanes"]
-        processes = [{row["jobs"]: row for row in record.output["rows"]} for record in good]
-        merge = lanes / median([row["merge_s"] for process in processes for row in process.values()])
-        for jobs in processes[0]:
-            rates = [lanes / process[jobs]["wall_s"] for process in processes]
-            rate = median(rates)
-            found.append(known | {
-                "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate,
-                "least": min(rates), "most": max(rates), "lane_us": 1e6 / lanes * median([process[jobs]["cpu_s"] for process in processes]),
-                "gain": median([process[1]["wall_s"] / process[jobs]["wall_s"] for process in processes]),
-                "work": median([process[jobs]["cpu_s"] / process[1]["cpu_s"] for process in processes]),
-                "memory_mb": max(process[jobs]["memory_mb"] for process in processes), "merged_per_s": merge,
-                "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name})
-    return found
+        rows = pandas.DataFrame([row | {"process": process} for process, record in enumerate(good) for row in record.output["rows"]])
+        rows = rows.join(rows[rows.jobs == 1].set_index("process")[["wall_s", "cpu_s"]], on="process", rsuffix="_alone")
+        merge = lanes / rows.merge_s.median()
+        for jobs, each in rows.groupby("jobs", sort=False):
+            rates = lanes / each.wall_s
+            rate = rates.median()
+            yield known | {
+                "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate, "least": rates.min(),
+                "most": rates.max(), "lane_us": 1e6 / lanes * each.cpu_s.median(), "gain": (each.wall_s_alone / each.wall_s).median(),
+                "work": (each.cpu_s / each.cpu_s_alone).median(), "memory_mb": each.memory_mb.max(), "merged_per_s": merge,
+                "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name}

@@ -111,8 +111,7 @@ def answer(row):
     if row.largest:
         text += f": {row.missed} ({row.null_missed})" + (f", {row.status}" if row.status != "ok" else "")
     if row.next == row.next:
-        text += f"; {row.next:.0f}: " + (f"{row.next_missed} ({row.next_null_missed})" if row.next_status in FINISHED
-                                         else row.next_status)
+        text += f"; {row.next:.0f}: " + (f"{row.next_missed} ({row.next_null_missed})" if row.next_status in FINISHED else row.next_status)
     if not row.complete or row.next != row.next:
         text += "; or more" + (", as the budget was spent" if not row.complete else "")
     return text

@@ -4,9 +4,8 @@ from analysis.realtime.tables import BOUNDS, LARGE
 
 
 def answers(tables, view):
-    largest, own = tables["largest"], view.registry.own
+    largest, own, found = tables["largest"], view.registry.own, []
     searched = largest[(largest.scheme == "penalty") & largest.largest.notna()]
-    found = []
     for step in view.settings["steps"]:
         rows = searched[searched.step == step]
         layers = {"libraries": rows[~rows.implementation.isin(own)], "own code": rows[rows.implementation.isin(own)]}

@@ -1,39 +1,40 @@
 # Distributions, what judging costs, what the search tried and what it came to, and the losses of null processes, from their records.
+from collections import namedtuple
+
 import pandas
 
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.core.text import number
-from analysis.realtime.verdict import judge, lost, missed
 
 TIMES = ("mean", "median", "p99", "p999", "max")
 END = "end of the search"
+HOPELESS = 0.01  # share of the steps beyond the null process's losses: no interruption explains as many
 LARGE, BOUNDS = 22, {True: 0.02, False: 0.04}  # variables; what judging may cost of a step from there on, and below
+
+# Of a run; why it did not keep its deadline; whether another run of the same would not keep it either.
+Verdict = namedtuple("Verdict", ("kept", "reason", "hopeless"))
 
 
 def build(records, view):
     nulls = {one.options["after"]: one for one in records if one.role == "null"}  # by the run that each came after
     order = {name: place for place, name in enumerate(view.registry.variants)}
-    found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
+    key = lambda row: (row["scheme"], row["step"], order[row["implementation"]], row["loops"], row["run"])
+    found = {role: pandas.DataFrame(sorted((_run(one, nulls.get(one.name)) for one in records if one.role == role), key=key))
              for role in ("steps", "search")}
-    found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
-                                     key=lambda column: column.map(order) if column.name == "implementation" else column)
-             if len(table) else table for role, table in found.items()}
-    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
-            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]),
-            "machine": pandas.DataFrame([{
-                "after": after, "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"), "seconds": float(one.options["seconds"]),
+    machine = [{"after": after, "step": float(f"{1e-6 * one.option('deadline-us'):g}"), "seconds": one.option("seconds"),
                 "status": one.status, "reason": one.reason, "record": one.name} | {
-                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()])}
+               key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
+    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
+            "judging": pandas.DataFrame(_judging([one for one in records if one.role == "judging"])), "tried": found["search"],
+            "largest": pandas.DataFrame(_largest(found["search"]))}
 
 
 def _run(record, null):
-    words, (status, reason) = record.options, of_run(record)
-    times = record.output.get("step_us") or {}
+    words, output, (status, reason) = record.options, record.output, of_run(record)
     row = {"implementation": record.cell["contenders"][0], "scheme": words["scheme"], "step": float(words["step"]),
-           "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status,
-           "reason": reason, "steps": record.output.get("steps"), "missed": missed(record),
-           "judge_us": record.output.get("judge_us"), "record": record.name} | {
-           f"{key}_us": times.get(key) for key in TIMES}
+           "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status, "reason": reason,
+           "steps": output.get("steps"), "missed": missed(record), "judge_us": output.get("judge_us"), "record": record.name} | {
+           f"{key}_us": (output.get("step_us") or {}).get(key) for key in TIMES}
     if status == "dropped":
         return row
     verdict = judge(record, null)
@@ -46,23 +47,20 @@ def _judging(records):
         "scene": one.cell["scene"], "implementation": one.cell["contenders"][0], "status": of_run(one)[0], "reason": of_run(one)[1],
         "variables": one.output.get("variables"), "mean_us": (one.output.get("step_us") or {}).get("mean"),
         "judge_us": one.output.get("judge_us"), "record": one.name} for one in records])
-    rows = []
     for scene, tried in runs.groupby("scene", sort=False) if len(runs) else ():
         whole = tried[tried.status.isin(FINISHED)]
         if whole.empty:
-            rows.append(tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None})
+            yield tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None}
             continue
         own = whole[whole.implementation == whole.groupby("implementation", sort=False).mean_us.median().idxmin()]
         shares = own.judge_us / own.mean_us
         row = own.loc[shares.sort_values().index[len(own) // 2]].to_dict()
         share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
-        rows.append(row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)})
-    return pandas.DataFrame(rows)
+        yield row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)}
 
 
 def _largest(tried):
     """One row a search: the largest size all of whose runs kept the deadline, and the next one tried that did not."""
-    rows = []
     for key, runs in tried.groupby(["scheme", "step", "implementation"], sort=False) if len(tried) else ():
         made = runs[runs.status != "dropped"]
         every = made.groupby("loops").kept.all() if len(made) else pandas.Series(dtype=bool)
@@ -76,22 +74,42 @@ def _largest(tried):
             row["record"] = " ".join(made.record)  # none of these kept the deadline
         if above:
             row |= {"next": min(above)} | _observed(made[made.loops == min(above)], "next_")
-        rows.append(row)
-    return pandas.DataFrame(rows)
+        yield row
 
 
 def _observed(runs, prefix):
-    """Counts of each run of a size, and the longest step of all."""
+    """Counts of each run of a size, "1300 and 1300", and the longest step of all."""
     if runs.empty:
         return {"record": ""} if not prefix else {}
-    found = {f"{prefix}steps": _counts(runs.steps), f"{prefix}missed": _counts(runs.missed),
-             f"{prefix}null_missed": _counts(runs.null_missed), f"{prefix}max_us": runs.max_us.max()}
+    found = {f"{prefix}{name}": " and ".join(number(value, 6) for value in runs[name]) for name in ("steps", "missed", "null_missed")} | {
+        f"{prefix}max_us": runs.max_us.max()}
     if prefix:
         worst = runs[~runs.kept.astype(bool)].iloc[0]
         return found | {"next_status": worst.status, "next_reason": worst.reason_not}
     return found | {"status": runs.status.iloc[-1], "reason": runs.reason.iloc[-1], "record": " ".join(runs.record)}
 
 
-def _counts(values):
-    """"1300 and 1300": one a run."""
-    return " and ".join(number(value, 6) for value in values)
+def missed(record):
+    """Steps that took longer than the deadline; None if there is no such count."""
+    return (record.output.get("step_us") or {}).get("deadline_misses")
+
+
+def lost(null):
+    """Deadlines that a null process lost: 0 if there was none, or if it did not work."""
+    return null.output["lost"] if null is not None and null.done else 0
+
+
+def needs_null(record):
+    """Whether a null process can matter: a run that is whole and missed nothing needs no excuse."""
+    return of_run(record)[0] in FINISHED and missed(record) > 0
+
+
+def judge(record, null):
+    """The Verdict on a run. `null`: the record of the null process after it, or None."""
+    status, reason = of_run(record)
+    if status not in FINISHED:
+        return Verdict(False, f"{status}: {reason}", True)
+    beyond, steps = missed(record) - lost(null), record.output["steps"]
+    if beyond <= 0:
+        return Verdict(True, "", False)
+    return Verdict(False, f"{missed(record)} of {steps} steps missed, {lost(null)} by the null process", beyond > HOPELESS * steps)

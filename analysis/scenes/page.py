@@ -1,7 +1,6 @@
 # What page.html.j2 shows of the standard problems and of modelling.
 import base64
-
-import numpy
+import math
 
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
@@ -15,12 +14,10 @@ CONSERVED = 1e-3  # share of the energy's scale
 def context(tables, view):
     problems, convergence = tables["problems"], tables["convergence"]
     rows = finest(problems)
-    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"),
-            "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
-            "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
-            "published": set(convergence.problem[convergence.published.notna()]),
+    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"), "gate": gate(tables["gate"]),
+            "everyone": everyone(problems), "conserved_limit": CONSERVED, "convergence": grouped(convergence, "problem"), "digits": digits,
+            "published": set(convergence.problem[convergence.published.notna()]), "good": GOOD, "settings": view.settings,
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
-            "settings": view.settings,
             "sheets": {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}}
 
 
@@ -34,19 +31,13 @@ def gate(table):
 
 def everyone(problems):
     """[(title, step, rows)] of the problems that more than the two ran, at the first step."""
-    found = []
-    for title, group in problems.groupby("title", sort=False):
-        first = group[group.step == group.step.max()]
-        if (~first.compared.fillna(False).astype(bool)).any():
-            found.append((title, first.step.iloc[0], first.to_dict("records")))
-    return found
+    first = problems[problems.step == problems.groupby("title").step.transform("max")]
+    return [(title, rows.step.iloc[0], rows.to_dict("records")) for title, rows in first.groupby("title", sort=False)
+            if not rows.compared.fillna(False).all()]
 
 
 def digits(value, count=8):
     """`value` with `count` significant digits, never in powers of ten for positions."""
-    if not numpy.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    places = max(0, count - 1 - int(numpy.floor(numpy.log10(abs(value)))))
-    return f"{value:.{places}f}"
+    if not value or not math.isfinite(value):
+        return "0" if value == 0 else "–"
+    return f"{value:.{max(0, count - 1 - math.floor(math.log10(abs(value))))}f}"

@@ -18,7 +18,7 @@ def answers(tables, view):
 
 def _errors(rows):
     if rows.empty:
-        return []
+        return
     judged = rows[rows.precision != "not judged"]
     high = judged[judged.status.isin(GOOD) & (judged.precision == "high")]
     text = (f"{rows.problem.nunique()} standard problems, {rows.implementation.nunique()} implementation"
@@ -26,30 +26,26 @@ def _errors(rows):
     if len(high):
         worst = high.loc[high.error_rms.idxmax()]
         text += f", with an error of {number(worst.error_rms, 2)} at most ({worst.title})"
-    return [{"text": f"{text}.", "anchor": "problems"}]
+    yield {"text": f"{text}.", "anchor": "problems"}
 
 
 def _gate(gate):
     asked = gate[~gate.verdict.isin(DROPPED)]
-    if asked.empty:
-        return []
     good, left = (asked.verdict == "agrees").sum(), (gate.verdict == "dropped").sum()
-    return [{"text": f"The gate: {good} of {len(asked)} pairs of problem and implementation agree with the reference"
-                     + (f"; {left} more were left out." if left else "."), "anchor": "gate"}]
+    if len(asked):
+        yield {"text": f"The gate: {good} of {len(asked)} pairs of problem and implementation agree with the reference"
+                       + (f"; {left} more were left out." if left else "."), "anchor": "gate"}
 
 
 def _costs(modelling):
     """A sentence a size, of the implementation that is fastest on the plain model."""
-    found = []
     for loops, group in modelling[modelling.ratio.notna()].groupby("loops"):
         plain = group[(group.case == group.base) & group.step_us.notna()]
         rows = group[group.status.isin(GOOD) & (group.case != group.base)]
         rows = rows[rows.implementation == plain.implementation[plain.step_us.idxmin()]] if len(plain) else rows[:0]
         if len(rows):
-            found.append({"anchor": "modelling", "text":
-                          f"The four-bar of N = {loops:.0f}, modelled in other ways with {rows.implementation.iloc[0]}: "
-                          f"{_cost(rows.loc[rows.ratio.idxmax()])}; {_cost(rows.loc[rows.ratio.idxmin()])}."})
-    return found
+            yield {"anchor": "modelling", "text": f"The four-bar of N = {loops:.0f}, modelled in other ways with {rows.implementation.iloc[0]}: "
+                                                  f"{_cost(rows.loc[rows.ratio.idxmax()])}; {_cost(rows.loc[rows.ratio.idxmin()])}."}
 
 
 def _cost(row):

@@ -1,5 +1,5 @@
 # Rows of the gate, of the standard problems and their convergence, and of what modelling costs.
-from functools import lru_cache
+from functools import cache
 
 import numpy
 import pandas
@@ -23,8 +23,7 @@ FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step"
 
 def build(records, view):
     listed = {problem.scene: problem for problem in read_list()[1]}
-    found = {"gate": [], "problems": [], "convergence": []}
-    runs = {}
+    found, runs = {"gate": [], "problems": [], "convergence": []}, {}
     for record in records:
         if record.role in ("gate", "compared", "everyone"):
             problem = listed.get(record.cell["scene"])
@@ -38,7 +37,7 @@ def build(records, view):
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
-    found["modelling"] = modelling_rows(records)
+    found["modelling"] = list(modelling_rows(records))
     order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
@@ -47,7 +46,6 @@ def build(records, view):
 
 def problem_rows(problem, runs):
     """One row a run. `runs`: {(implementation, step): record}."""
-    result = []
     for (name, step), record in runs.items():
         status, reason = of_run(record)
         row = {"problem": problem.name, "title": problem.title, "implementation": name,
@@ -59,14 +57,9 @@ def problem_rows(problem, runs):
             row["error_rms"], row["error_max"] = metric.errors({column: _values(record, column) for column in known}, known)
             row["precision"] = metric.precision(row["error_rms"])
         if status in FINISHED and problem.mirrored:
-            row["asymmetry"] = max(_apart(record, left, right, "x", 1) + _apart(record, left, right, "y", -1)
-                                   for left, right in problem.mirrored)
-        result.append(row)
-    return result
-
-
-def _apart(record, left, right, axis, sign):
-    return float(max(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}"))))
+            row["asymmetry"] = max(sum(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}")).max()
+                                       for axis, sign in (("x", 1), ("y", -1))) for left, right in problem.mirrored)
+        yield row
 
 
 def _known(problem, runs, name, step):
@@ -74,18 +67,19 @@ def _known(problem, runs, name, step):
     finest two steps of the other one that is compared."""
     if problem.known != EXTRAPOLATED:
         solution = _solution(problem.known, tuple(numpy.round(_values(runs[name, step], "t"), 12)))
-        return {column: values for column, values in solution.items() if column.split(".")[0] in problem.judged}
+        return {column: solution[column] for column in problem.columns(solution)}
     other = next((one for one, _ in runs if one != name and runs[one, problem.steps[0]].role == "compared"), None)
     finer, finest = (runs.get((other, one)) for one in problem.steps[1:])
-    if any(record is None or of_run(record)[0] not in FINISHED for record in (finer, finest)):
+    if not _whole(finer, finest):
         return None
-    return {column: extrapolate(_values(finer, column), _values(finest, column))
-            for column in problem.columns(finest.series)}
+    return {column: extrapolate(_values(finer, column), _values(finest, column)) for column in problem.columns(finest.series)}
 
 
-@lru_cache(maxsize=None)
-def _solution(known, times):
-    return KNOWN[known](numpy.array(times))
+def _whole(*records):
+    return all(record and of_run(record)[0] in FINISHED for record in records)
+
+
+_solution = cache(lambda known, times: KNOWN[known](numpy.array(times)))
 
 
 def _values(record, column):
@@ -95,21 +89,19 @@ def _values(record, column):
 def convergence_rows(problem, runs):
     """The final value of every judged component over three steps: order and extrapolated value; where it is
     published, that and by how much the extrapolated value differs."""
-    result = []
     published = PUBLISHED[problem.published]() if problem.published else {}
     for name in dict.fromkeys(name for (name, _), record in runs.items() if record.role == "compared"):
         three = [runs.get((name, step)) for step in problem.steps]
-        if len(three) != 3 or any(record is None or of_run(record)[0] not in FINISHED for record in three):
+        if len(three) != 3 or not _whole(*three):
             continue
         for column in problem.columns(three[0].series):
             values = [_values(record, column)[-1] for record in three]
             limit, known = extrapolate(*values[1:]), published.get(column, numpy.nan)
-            result.append({
+            yield {
                 "problem": problem.name, "implementation": name, "component": column, "time": three[0].series["t"][-1],
                 "coarse": values[0], "finer": values[1], "finest": values[2], "order": float(observed_order(*values)),
                 "order_meaningful": bool(abs(values[1] - values[2]) > ORDER_NOISE * max(abs(values[2]), 1e-3)),
-                "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name})
-    return result
+                "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name}
 
 
 def modelling_rows(records):
@@ -119,10 +111,9 @@ def modelling_rows(records):
     loops_of = lambda scene: int(scene.rpartition("/")[2].partition("-")[0])  # which study/scenes/modelling.py wrote
     motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case.name): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
-    timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name)
-                           for case in CASES])
+    timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name) for case in CASES])
     timed["loops"] = [loops_of(scene) for scene in timed.scene]
-    result, cases = [], {case.name: case for case in CASES}
+    cases = {case.name: case for case in CASES}
     for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):
         status, reason = of_run(record)
         rows = timed[(timed.implementation == name) & (timed.loops == loops)]
@@ -138,12 +129,6 @@ def modelling_rows(records):
         if len(good):
             row |= {"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high}
         if status in GOOD:
-            row["position_error"] = _error(record, loops)
-        result.append(row)
-    return result
-
-
-def _error(record, loops):
-    """Largest distance of B0 from the exact motion along an axis, m; over all instants that are kept."""
-    exact = four_bar(_values(record, "t"), loops)
-    return max(float(numpy.max(numpy.abs(_values(record, column) - exact[column]))) for column in ("B0.x", "B0.y"))
+            exact = four_bar(_values(record, "t"), loops)
+            row["position_error"] = max(abs(_values(record, column) - exact[column]).max() for column in ("B0.x", "B0.y"))
+        yield row

@@ -26,25 +26,20 @@ def draw(tables, view):
 
 
 def one_map(table, windows, scheme, precision):
-    """The figure of the rows of one scheme and precision."""
     rows = table[(table.scheme == scheme) & (table.precision == precision)]
     sizes = sorted(rows.loops.unique())
     figure, grid = panels(len(sizes), 3 if len(sizes) in (3, 5, 6, 9) else 4, 3.1, 3.5)
     for axes, loops in zip(grid, sizes):
         _panel(axes, rows[rows.loops == loops])
-        _lines(axes, rows[rows.loops == loops],
-               windows[(windows.loops == loops) & (windows.precision == precision)],
-               # The estimates of the upper end hold for the penalty form.
-               ("lower", "upper") if scheme == "penalty" else ("lower",))
+        _lines(axes, rows[rows.loops == loops], windows[(windows.loops == loops) & (windows.precision == precision)],
+               ("lower", "upper") if scheme == "penalty" else ("lower",))  # estimates of the upper end hold for that form
         axes.set_title(f"N = {loops:.0f}, n = {2 * loops + 2:.0f}")
     figure.supxlabel("step Δt, ms", fontsize=10)
     figure.supylabel("penalty factor α, kg/(m² s²)", fontsize=10)
-    figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02,
-                    label="largest position error, m")
+    figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02, label="largest position error, m")
     used = set(rows[rows.penalty_asked != "auto"].status.map(category))
     below(figure, 4, [Patch(facecolor=colour, hatch=hatch, edgecolor=GREY, label=name) for name, (colour, hatch) in HATCHES.items() if name in used])
-    figure.suptitle(f"{scheme} form, {precision} precision: {rows.implementation.iloc[0]}",
-                    x=0.01, ha="left", fontsize=12)
+    figure.suptitle(f"{scheme} form, {precision} precision: {rows.implementation.iloc[0]}", x=0.01, ha="left", fontsize=12)
     return figure
 
 
@@ -77,7 +72,7 @@ def _edges(values):
     """Boundaries between logarithmic values; half a decade around a single one."""
     logs = numpy.log10(values)
     middle = (logs[1:] + logs[:-1]) / 2
-    first, last = ((middle[0], middle[-1]) if len(logs) > 1 else (logs[0] + 0.25, logs[0] - 0.25))
+    first, last = (middle[0], middle[-1]) if len(logs) > 1 else (logs[0] + 0.25, logs[0] - 0.25)
     return 10 ** numpy.concatenate([[2 * logs[0] - first], middle, [2 * logs[-1] - last]])
 
 
@@ -89,7 +84,7 @@ def _lines(axes, rows, windows, ends):
     axes.plot(automatic.step, automatic.penalty, linewidth=1.2, **LINES["automatic"])
     good = automatic.status == "ok"
     axes.plot(automatic.step[good], automatic.penalty[good], "k.", label="automatic α is ok")
-    axes.plot(automatic.step[~good], automatic.penalty[~good], "kX", markersize=7,
-              markeredgecolor="white", markeredgewidth=0.6, label="automatic α is not ok")
-    axes.plot(*PAPER, "*", color="#CC79A7", markersize=11, markeredgecolor="black",
-              markeredgewidth=0.6, linestyle="none", label="the paper's setting")
+    axes.plot(automatic.step[~good], automatic.penalty[~good], "kX", markersize=7, markeredgecolor="white", markeredgewidth=0.6,
+              label="automatic α is not ok")
+    axes.plot(*PAPER, "*", color="#CC79A7", markersize=11, markeredgecolor="black", markeredgewidth=0.6, linestyle="none",
+              label="the paper's setting")

@@ -4,11 +4,9 @@ ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 
 def context(tables, view):
     table = tables["maps"][tables["maps"].status != "dropped"]
-    parts = []
-    for (scheme, precision), rows in table.groupby(["scheme", "precision"], sort=False):
-        parts.append({"scheme": scheme, "precision": precision, "name": f"{scheme}-{precision}",
-                      "implementation": rows.implementation.iloc[0], "counts": rows.status.value_counts().to_dict(),
-                      "valleys": valleys(rows), "automatic": automatic(rows)})
+    parts = [{"scheme": scheme, "precision": precision, "name": f"{scheme}-{precision}", "implementation": rows.implementation.iloc[0],
+              "counts": rows.status.value_counts().to_dict(), "valleys": valleys(rows), "automatic": automatic(rows)}
+             for (scheme, precision), rows in table.groupby(["scheme", "precision"], sort=False)]
     missed = {}  # {precision: cells of its maps whose automatic penalty factor misses a valley}
     for part in parts:
         missed[part["precision"]] = missed.get(part["precision"], 0) + len(part["automatic"][0])
@@ -36,10 +34,8 @@ def valleys(rows):
     """{loops: {step: (least, largest, ok, between)}} of alpha step^2 / 4: the ends of the "ok" cells,
     how many cells are ok and how many there are between the ends; None where none is ok."""
     found = {}
-    grid = rows[rows.penalty_asked != "auto"]
-    for (loops, step), group in grid.groupby(["loops", "step"]):
+    for (loops, step), group in rows[rows.penalty_asked != "auto"].groupby(["loops", "step"]):
         good = group[group.status == "ok"].alpha_dt2_4
-        found.setdefault(loops, {})[step] = None if good.empty else (
-            good.min(), good.max(), len(good), int(group.alpha_dt2_4.between(good.min(),
-                                                                             good.max()).sum()))
+        ends = good.min(), good.max()
+        found.setdefault(loops, {})[step] = None if good.empty else (*ends, len(good), int(group.alpha_dt2_4.between(*ends).sum()))
     return found

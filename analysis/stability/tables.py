@@ -1,11 +1,13 @@
 # Rows of maps, windows and whole runs from their records.
+import math
+
 import pandas
 
 from analysis.core.outcomes import of_run
 
 FIGURES = ("failed_at", "position_error_max", "energy_drift_max", "passes_per_step", "steps_at_limit")
 MUST_HOLD = {  # scheme: up to which N, position error (m), passes a step, steps at the pass limit
-    "penalty": (200, 5e-3, 3.0, None), "saddle-point": (2000, 2e-3, 2.2, 0)}
+    "penalty": (200, 5e-3, 3.0, math.inf), "saddle-point": (2000, 2e-3, 2.2, 0)}
 
 
 def build(records, view):
@@ -44,10 +46,8 @@ def _loops(record):
 
 def holds(row):
     """"yes", "no", or "" where nothing is asked or nothing was run."""
-    promised = MUST_HOLD.get(row["scheme"])
-    if promised is None or row["loops"] > promised[0] or row["status"] == "dropped":
+    largest, error, passes, at_limit = MUST_HOLD.get(row["scheme"], (0, 0, 0, 0))
+    if row["loops"] > largest or row["status"] == "dropped":
         return ""
-    _, error, passes, at_limit = promised
-    kept = (row["status"] == "ok" and row["position_error_max"] < error and row["passes_per_step"] <= passes
-            and (at_limit is None or row["steps_at_limit"] <= at_limit))
-    return "yes" if kept else "no"
+    kept = row["status"] == "ok" and row["position_error_max"] < error and row["passes_per_step"] <= passes
+    return "yes" if kept and row["steps_at_limit"] <= at_limit else "no"

@@ -181,15 +181,15 @@ def test_the_motion_of_the_double_pendulum():
     subject = subject_of("double-pendulum")
     series = {"t": list(times)} | {f"{point}.{axis}": list(places[place]) for point, places in (
         ("B", first), ("C", second)) for place, axis in enumerate("xy")}
-    record = SimpleNamespace(series=series)
-    assert subject.our_error(record) == 0
+    record = SimpleNamespace(output={}, series=series)
+    assert subject.error(record, False) == 0
     series["C.y"] = list(second[1] + 1e-3)
-    assert subject.our_error(record) == pytest.approx(1e-3)
+    assert subject.error(record, False) == pytest.approx(1e-3)
     series["C.y"][3] = None
-    assert numpy.isnan(subject.our_error(record))  # never smaller for what is missing
+    assert numpy.isnan(subject.error(record, False))  # never smaller for what is missing
     points = numpy.moveaxis(numpy.array([first, second]), 2, 0).reshape(401, 4)
-    output = {"outputs": {"t": times.tolist(), "points": (points + [0, 0, 0, 1e-4]).tolist()}}
-    assert subject.engine_error(output) == pytest.approx(1e-4)
+    record.output = {"outputs": {"t": times.tolist(), "points": (points + [0, 0, 0, 1e-4]).tolist()}}
+    assert subject.error(record, True) == pytest.approx(1e-4)
     end, after = positions(numpy.array([PENDULUM_S, 75 * 0.0266667])).transpose(2, 0, 1)
     assert numpy.hypot(*(after - end).T).max() < 1e-4  # a rounded step ends 2.5e-6 s later
 

@@ -119,8 +119,9 @@ def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
     assert judge.true_motion(cells.Extreme("x", "x", "", flat), {}, [])[1] == 0
     second = {"t": list(TIMES)} | {key: list(values) for key, values in flat.solutions(TIMES)[1].items()}
     other = record("x", {}, series=second)
-    assert judge.error_of(other, judge.apart(other, flat.solutions(TIMES), 1.0)) == 0
-    assert judge.error_of(other, judge.apart(other, flat.solutions(TIMES)[:1], 1.0)) > 0.1
+    assert judge.off(other, flat.solutions(TIMES), 1.0, 0.1) == (0, None)
+    error, since = judge.off(other, flat.solutions(TIMES)[:1], 1.0, 0.1)
+    assert error > 0.1 and 0 < since < TIMES[-1]
 
     def sprung(shift, status="ok"):
         return record("r", {}, {"status": status}, {"t": [0.0], "B.x": [shift], "B.y": [0.0], "C.x": [0.0], "C.y": [0.0]})

@@ -8,7 +8,7 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.realtime import figures, page, sentences, tables
-from analysis.realtime.verdict import judge, needs_null
+from analysis.realtime.tables import judge, needs_null
 
 REGISTRY = Registry({"implementations": [
     {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},

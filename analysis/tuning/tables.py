@@ -12,7 +12,7 @@ def build(records, view):
     found = []
     for scene in view.settings["scenes"]:
         here = rows[rows.scene == scene]
-        cells = cells_of(here, scene, said) if len(here) else {}
+        cells = cells_of(here, scene, said)
         for name, one in view.registry.tried.items():
             known = {"scene": scene, "base": one["tried_for"], "alternative": name, "description": one["description"]}
             row = _row(here, cells, name, one["tried_for"]) or _unasked(gate, scene, name)

@@ -1,4 +1,7 @@
 # What a column of accuracy runs: motions of a subject (untimed), and points of these in timed processes.
+from contextlib import suppress
+from dataclasses import replace
+
 from analysis.accuracy import points, subjects
 from analysis.core.errors import StudyError
 from analysis.core.registry import ANCHOR
@@ -26,8 +29,7 @@ class Runs:
         if unknown or "default" not in self.settings:
             raise StudyError(f"accuracy: settings: unknown, or without default: {', '.join(sorted(unknown)) or chosen}")
         own = [one for one in lab.contenders if one.variant in lab.registry.own]
-        self.layers = {name: group for name, group in (
-            ("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
+        self.layers = {name: group for name, group in (("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
         self.names = {one.name: one for group in self.layers.values() for one in group}
         self.longest, self.records, self.known = lab.settings["longest"], [], None
         self.chosen = {}  # {scene: {(setting, step): contenders that are timed}}
@@ -38,42 +40,30 @@ class Runs:
     def refer(self):
         """Makes the reference; what is extrapolated is simulated by one contender, the same in every study."""
         one = self.lab.contender(ANCHOR) or next(iter(self.lab.contenders), None)
-        finest = self.subject.steps[-1]
-        cells = [self._cell(one, "default", finest / divisor, self.subject.scene, "reference", seconds=300)
+        cells = [replace(self.run_cell(one, "default", self.subject.steps[-1] / divisor), role="reference", seconds=300)
                  for divisor in (1, 2, 4) if self.subject.entry and self.subject.entry.known == "extrapolated"]
-        try:
+        with suppress(StudyError):  # said in references.csv: no error is known, nobody is timed
             self.known = subjects.reference(self.subject, self.lab.run(cells))
-        except StudyError:  # said in references.csv: no error is known, nobody is timed
-            self.known = None
 
     def simulate(self, jobs):
         """Runs of (contender, setting, step, scene, duration), on all cores, as long as the budget lasts."""
         self.records += self.lab.run([self.run_cell(*job) for job in jobs], drop=True)
 
     def run_cell(self, one, name, step, scene=None, duration=None):
-        return self._cell(one, name, step, scene or self.subject.scene, f"run/{self.settings[name].file_name}", duration)
+        words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
+        return Cell("simulate", scene or self.subject.scene, (one,), words, f"run/{self.settings[name].file_name}",
+                    seconds=CAREFUL * (1 + self.longest), keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
     def row(self, record):
         """What a run came to; its record is kept."""
         self.records.append(record)
         return points.runs([record], self.subject, self.known).to_dict("records")[0]
 
-    def _cell(self, one, name, step, scene, role, duration=None, seconds=None):
-        words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
-        return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
-                    keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
-
-    def look(self, scene, name, step, contenders, dense=False, patience=None):
-        """A short timed process in which the contenders of a point take turns."""
-        more = ("--patience", patience) if patience else ()
-        steps = max(LEAST, self.stretch(scene, step, dense) // LOOK)
-        self._time("look", scene, name, step, contenders, 1, ("--steps", steps, *more))
-
     def quick(self, scene, step, contenders, behind, dense=False):
         """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
         order."""
         for patience in PATIENCE if contenders else ():
-            self.look(scene, "default", step, contenders, dense, patience)
+            self.time("look", scene, "default", step, contenders, dense=dense, more=("--patience", patience))
             rows = self.measured()
             rows = rows[(rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
                         & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us", kind="stable")
@@ -82,15 +72,13 @@ class Runs:
                 return [self.names[name] for name in near]
         return []
 
-    def time(self, role, scene, name, step, contenders, processes, dense=False):
-        """Timed processes in which the contenders of a point take turns; role: "time" or "pair"."""
-        self._time(role, scene, name, step, contenders, processes, ("--steps", self.stretch(scene, step, dense)))
-
-    def _time(self, role, scene, name, step, contenders, processes, more):
-        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, *more)
-        self.records += timing.measure(
-            self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
-            role=f"{role}/{self.settings[name].file_name}", seconds=60)
+    def time(self, role, scene, name, step, contenders, processes=1, dense=False, more=()):
+        """Timed processes in which the contenders of a point take turns; role: "look", which is short, "time" or "pair"."""
+        steps = self.stretch(scene, step, dense)
+        steps = max(LEAST, steps // LOOK) if role == "look" else steps
+        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, "--steps", steps, *more)
+        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
+                                       role=f"{role}/{self.settings[name].file_name}", seconds=60)
 
     def stretch(self, scene, step, dense=False):
         """Steps from the start that are timed: of the whole run, but no more than take a few hundredths of a second."""

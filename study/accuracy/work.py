@@ -62,9 +62,8 @@ def _follow(runs, speed):
     found = {}
     for layer, contenders in runs.layers.items():
         for name in runs.settings:
-            serving = runs.serving(name, [*speed[layer], *(one for one in contenders if one not in speed[layer])])
-            if serving:
-                found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(serving[0], name, step)) for step in runs.subject.steps], 2.0)
+            for one in runs.serving(name, dict.fromkeys([*speed[layer], *contenders]))[:1]:
+                found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(one, name, step)) for step in runs.subject.steps], 2.0)
     curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), SHARE, status="excluded")
     return {key: curve.rows for key, curve in found.items()}
 
@@ -94,31 +93,28 @@ def _longest(rows, error):
 def _measure(runs, scene, speed, found):
     """Looks, own runs and the first processes of one scene."""
     runs.lab.tell(scene)
-    for layer, points in _wanted(runs, found, scene != runs.subject.scene).items():
-        for name, step in points:
+    for layer in runs.layers:
+        for name, step in _wanted(runs, found, layer, scene != runs.subject.scene):
             contenders = runs.serving(name, speed[layer])
             if contenders:
-                runs.look(scene, name, step, contenders)
+                runs.time("look", scene, name, step, contenders)
     _judge(runs, scene)
     _rounds(runs, scene, runs.lab.settings["processes"][0])
 
 
-def _wanted(runs, found, filled):
-    """{layer: [(setting, step)]} worth a look: for each required error the longest steps of the fastest settings, and at
-    own fill the front of the layer's curves."""
-    wanted = {}
-    for layer in runs.layers:
-        chosen = []
-        for error in runs.lab.settings["errors"]:
-            rows = filter(None, (_longest(rows, error) for key, rows in found.items() if key[0] == layer))
-            rows = sorted(rows, key=lambda row: row["time"])[:MOST]
-            chosen += [row for row in rows if row["time"] <= TRIED[filled] * rows[0]["time"]]
-        if not filled:
-            made, names = runs.made(), [one.name for one in runs.layers[layer]]
-            mine = made[made.implementation.isin(names) & (made.scene == runs.subject.scene)]
-            chosen += mine.loc[pareto(mine)].to_dict("records")
-        wanted[layer] = list(dict.fromkeys((row["setting"], row["step"]) for row in chosen))
-    return wanted
+def _wanted(runs, found, layer, filled):
+    """(setting, step) worth a look: for each required error the longest steps of the fastest settings, and at own fill the
+    front of the layer's curves."""
+    chosen = []
+    for error in runs.lab.settings["errors"]:
+        rows = filter(None, (_longest(rows, error) for key, rows in found.items() if key[0] == layer))
+        rows = sorted(rows, key=lambda row: row["time"])[:MOST]
+        chosen += [row for row in rows if row["time"] <= TRIED[filled] * rows[0]["time"]]
+    if not filled:
+        made = runs.made()
+        mine = made[made.implementation.isin([one.name for one in runs.layers[layer]]) & (made.scene == runs.subject.scene)]
+        chosen += mine.loc[pareto(mine)].to_dict("records")
+    return dict.fromkeys((row["setting"], row["step"]) for row in chosen)
 
 
 def _judge(runs, scene):
@@ -129,14 +125,11 @@ def _judge(runs, scene):
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
-            mine = table[table.implementation.isin([one.name for one in group])]
-            mine = mine[mine.error <= error].sort_values("time", kind="stable")
+            mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)].sort_values("time", kind="stable")
             chosen = mine[(mine.time <= JUDGED * mine.time.min()) | mine.index.isin(_others(mine, OTHERS))]
-            for row in chosen[chosen.status == NOT_JUDGED].itertuples():
-                duration = runs.duration(row.time)
-                if duration:
-                    jobs.append((runs.names[row.implementation], row.setting, row.step, scene, duration))
-    runs.simulate(dict.fromkeys(jobs))
+            jobs += [(runs.names[row.implementation], row.setting, row.step, scene, runs.duration(row.time))
+                     for row in chosen[chosen.status == NOT_JUDGED].itertuples()]
+    runs.simulate(dict.fromkeys(job for job in jobs if job[-1]))
 
 
 def _rounds(runs, scene, processes, open_only=False):

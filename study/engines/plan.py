@@ -4,16 +4,19 @@ import json
 import math
 import random
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+import yaml
+
+from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import Subject, subject_of
+from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of
 from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.curves import Curve, follow
 from study.core.setting import read_settings
-from study.engines.settings import read_list
 
 SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "engine_settings": int,  # of each engine, the first of settings.yaml
@@ -23,12 +26,43 @@ SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "rounds": int}
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
-REPEATS = 5          # of such a run in one process; the least time of each of its pieces counts
+REPEATS = 5          # of such a run in one process, theirs as ours; the least time of each of its pieces counts
 SEED = 20080101
 PAPER = ("default", "paper")  # of ours: the paper's scheme, which is to be followed however far from others it is
 PROGRAMS = "study/engines"                              # in a build
 NATIVE_PROGRAM = "../build-engines/study/engines/engine_ode"  # as seen from the build; study/engines/native makes it
 SET_UP = "study/setup --engines"
+LIST = Path(__file__).with_name("settings.yaml")
+
+
+@dataclass(frozen=True)
+class EngineSetting:
+    """What is passed to an engine's program, and what changes along its curve."""
+    engine: str
+    over: str          # "step" (s) or "accuracy"
+    values: tuple      # of `over`, the coarsest first
+    options: tuple = ()
+
+    def words(self, value):
+        return ("--setting", *(f"{key}={text}" for key, text in (*self.options, (self.over, f"{value:g}"))))
+
+
+def read_list(path=LIST):
+    """{engine: [EngineSetting]}"""
+    listed = yaml.safe_load(path.read_text(encoding="utf-8"))
+    values = {over: tuple(map(float, found)) for over, found in listed["values"].items()}
+    for over, found in values.items():
+        if list(found) != sorted(found, reverse=True):
+            raise StudyError(f"{path}: values of {over}: the coarsest must be the first")
+    found = {}
+    for engine, entries in listed["engines"].items():
+        for entry in entries:
+            if set(entry) - {"over", "options"} or entry.get("over") not in values:
+                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, no more")
+        found[engine] = [EngineSetting(engine, one["over"], values[one["over"]], tuple(one.get("options", {}).items())) for one in entries]
+        if len(set(found[engine])) < len(entries):
+            raise StudyError(f"{path}: {engine}: settings must differ")
+    return found
 
 
 def columns(settings):
@@ -38,7 +72,7 @@ def columns(settings):
 
 def run(lab, column):
     subject, missing = subject_of(column), unavailable()
-    asked = [engine for engine in read_list() if subject.asks(engine)]
+    asked = [engine for engine in read_list() if subject.name != ANDREWS or engine in SOLVERS]
     for engine in asked:
         if missing[engine]:
             lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])
@@ -75,13 +109,11 @@ class Bench:
         if "ode" not in names:
             return found
         if not (ROOT / "build" / NATIVE_PROGRAM).exists():
-            self.lab.skip(Cell("", program=NATIVE_PROGRAM, role=ENGINE), "unavailable",
-                          "not built with our flags: study/engines/native")
+            self.lab.skip(Cell("", program=NATIVE_PROGRAM, role=ENGINE), "unavailable", "not built with our flags: study/engines/native")
             return found
         chosen, _ = candidates(found[found.name == "ode"], frame([]), ())
         cells = [replace(cell, program=NATIVE_PROGRAM) for cell in chosen.get("cell", ())]
-        return frame([*found.to_dict("records"), *(
-            row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
+        return frame([*found.to_dict("records"), *(row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
 
     def engine_cell(self, program, settings):
         return Cell("", program=program, role=ENGINE, seconds=1.0 + 3 * self.lab.settings["time_limit"],
@@ -116,14 +148,11 @@ class Bench:
     def rounds(self, engines, ours):
         """What may be the fastest at some error, theirs and ours in turn, in an order that is new in every round."""
         theirs, mine = candidates(engines, ours, self.lab.registry.own)
-        cells = [self._alone(one) for one in [*theirs.to_dict("records"), *mine.to_dict("records")]]
+        cells = []
+        for one in [*theirs.to_dict("records"), *mine.to_dict("records")]:
+            often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
+            cells.append(replace(one["cell"], settings=(*one["cell"].settings, *often), role=ROUND, timed=True, keep=(), every=0))
         for number in range(1, self.lab.settings["rounds"] + 1):
             order = random.Random(f"{SEED}:{self.subject.name}:{number}").sample(cells, len(cells))
             self.lab.tell(f"round {number} of {self.lab.settings['rounds']}")
             self.lab.run([replace(cell, number=number) for cell in order], drop=True)
-
-    def _alone(self, one):
-        """The timed cell of a row; a short run is repeated in its process, theirs as ours."""
-        cell = one["cell"]
-        often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
-        return replace(cell, settings=(*cell.settings, *often), role=ROUND, timed=True, keep=(), every=0)

@@ -1,4 +1,6 @@
 # Every implementation at the extremes; is every wrong run told; kept pivots.
+from itertools import product
+
 from analysis.extremes import battery as table, cells, judge, trials
 from study.core.cell import REFERENCE, Cell
 from study.core.profile import by_share
@@ -22,22 +24,20 @@ def battery(lab):
     rest = [cell for cell in extreme if cell.place is None and not lab.settings["cells"]]
     tried = list(dict.fromkeys(cell for cell, _ in chosen))
     scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in tried + telling + rest}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor, *who) for some, who in ((tried, (turns[-1], "mbs")), (telling + rest, ()))
+    lab.run([Cell("simulate", scenes[cell.name], (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
+                  table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns, every=cell.every * factor)
+             for some, one, program in ((tried, turns[-1], "mbs"), (telling + rest, REFERENCE, "mbs_reference"))
              for cell in some if cell.motion is None for factor in judge.FINER])
     todo = []
     for place, (cell, setting) in enumerate(chosen):
         turn = 0 if cell.axis in trials.STANDARD else place % len(turns)
-        todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, turns[turn:] + turns[:turn], setting)[:1])
+        todo += _run(lab, cell, scenes[cell.name], setting, turns[turn:] + turns[:turn], 1)
     for rank in (0, 1):
         forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
         for some, settings, who in ((telling, cells.FORMS, forms), (rest, cells.FORMS, forms), (telling, cells.OTHERS, others)):
-            for cell, setting in ((cell, setting) for cell in some for setting in settings):
-                todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, who, setting))
+            for cell, setting in product(some, settings):
+                todo += _run(lab, cell, scenes[cell.name], setting, who)
     lab.run(todo, drop=True)
-
-
-def _serving(lab, who, setting):
-    return [one for one in who if lab.registry.serves(one.variant, *setting.needs)]
 
 
 def _who(lab, kind):
@@ -47,22 +47,15 @@ def _who(lab, kind):
     return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
 
 
-def _run(lab, cell, scene, setting, *who):
-    """[Cell of each], without those that are left out."""
-    words, found = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)]), []
-    for one in who:
+def _run(lab, cell, scene, setting, who, most=None):
+    """[Cell of each, or of so many at `most`, who serves the setting], without those that are left out."""
+    words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
+    for one in [one for one in who if lab.registry.serves(one.variant, *setting.needs)][:most]:
         wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns, every=cell.every)
         if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
-            found.append(wanted)
+            yield wanted
         else:
             lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
-    return found
-
-
-def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference"):
-    return Cell("simulate", scene, (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
-                table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns,
-                every=cell.every * factor)
 
 
 def pivots(lab):

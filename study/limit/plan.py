@@ -1,5 +1,5 @@
 # Steps beside the limit code and its bounds; own code beside libraries, scene by scene; growth; batches; sweeps.
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from analysis.core.files import ROOT
 from analysis.core.timing import LEFT_OUT, processes as rows_of
@@ -61,29 +61,23 @@ def growth(lab):
         timed(lab, f"four-bar:{loops}", here, "growth", (*setting.words(), *FIRST))
 
 
-@dataclass(frozen=True)
-class Scene:
-    name: str      # as the program takes it
-    kind: str      # problem, example or fill
-    settings: tuple = ()
-
-
 def listed(settings):
-    """What own code and libraries meet on, most worth first: problems at their own steps, the others at the program's."""
-    problems = [Scene(one.scene, "problem", ("--step", f"{one.steps[0]:g}", *one.settings))
+    """[(scene, kind, settings of the step)] that own code and libraries meet on, most worth first: problems at their own steps, the others
+    at the program's."""
+    problems = [(one.scene, "problem", ("--step", f"{one.steps[0]:g}", *one.settings))
                 for one in read_list()[1] if one.name in settings["problems"]]
     files = {path.stem: path.relative_to(ROOT).as_posix() for path in (ROOT / "harness/scenes/examples").glob("*.json")}
-    return [*problems, *(Scene(f"four-bar:49,fill={fill:g}", "fill") for fill in settings["fills"]),
-            *(Scene(files[name], "example") for name in settings["examples"])]
+    return [*problems, *((f"four-bar:49,fill={fill:g}", "fill", ()) for fill in settings["fills"]),
+            *((files[name], "example", ()) for name in settings["examples"])]
 
 
 def scenes(lab):
     here = usual(lab)
     chosen = listed(lab.settings) if here else []
-    about(lab, [scene.name for scene in chosen])
-    for scene in chosen:
-        elsewhere(lab, Cell("bench", scene.name, role=f"{scene.kind}-look"))
-        contests(lab, scene.name, [Form(scene.kind, here, lab.settings["processes"], lab.settings["samples"], scene.settings)],
+    about(lab, [scene for scene, _, _ in chosen])
+    for scene, kind, settings in chosen:
+        elsewhere(lab, Cell("bench", scene, role=f"{kind}-look"))
+        contests(lab, scene, [Form(kind, here, lab.settings["processes"], lab.settings["samples"], settings)],
                  own={LIMIT, *lab.registry.own}, always=True)
 
 

@@ -1,8 +1,9 @@
 # Steps against the deadline that real time sets them, their own length: distributions of their times, what judging them costs,
 # and the search for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
+from functools import cache
 
-from analysis.realtime.verdict import judge, needs_null, observed
+from analysis.realtime.tables import judge, needs_null
 from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
@@ -49,10 +50,9 @@ def cases(lab):
 
 
 def distributions(lab):
-    duration = lab.settings["duration"]
     for step in lab.settings["steps"]:
-        null(lab, step, duration, "distributions")
-    lab.run([case.cell("steps", loops, duration) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
+        null(lab, step, lab.settings["duration"], "distributions")
+    lab.run([case.cell("steps", loops, lab.settings["duration"]) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
 
 
 def judging(lab):
@@ -93,7 +93,8 @@ class Probe:
 
     def null(self, place):
         """After the run of a place, for as long as its steps took."""
-        return null(self.lab, self.case.step, observed(self.runs[place]), self.runs[place].name)
+        run = self.runs[place]
+        return null(self.lab, self.case.step, 1e-6 * run.output["step_us"]["mean"] * run.output["steps"], run.name)
 
     def _verdict(self, place, number):
         cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)
@@ -107,12 +108,7 @@ def search(probe, count):
     """The last place below `count` that `probe` says is "kept", -1 if none is, None where it gives up. Upwards in
     jumps, then by bisection. A place that is "unsure", since one of its two runs failed, may have been interrupted: the
     search goes on above it, but it is no answer."""
-    low, high, known = -1, count, {}
-
-    def ask(place):
-        if place not in known:
-            known[place] = probe(place)
-        return known[place]
+    low, high, ask = -1, count, cache(probe)
     while high - low > 1:
         at = (low + high) // 2 if high < count else min(low + JUMP, count - 1)
         answer = ask(at)
@@ -120,7 +116,7 @@ def search(probe, count):
             return None
         low, high = (low, at) if answer == "failed" else (at, high)
     while low >= 0 and ask(low) != "kept":
-        if known[low] is None:
+        if ask(low) is None:
             return None
         low -= 1
     return low

@@ -1,84 +1,75 @@
 # Equations of motion in as few coordinates as a mechanism has freedoms, written down by hand for it and
 # integrated with step control: they share neither coordinates, mass matrix nor constraints with `mbs`.
 #
-# Each function takes times (s) and returns {column of an output file: values}; numbers are the scenes'.
-from contextlib import contextmanager
+# Each function takes times (s) and the tolerance of its integration, and returns {column of an output file: values}; numbers are the scenes'.
+import math
 
 import numpy
 from scipy.integrate import solve_ivp
 
 GRAVITY = 9.81  # m/s^2
-TOLERANCE = 1e-12  # relative and absolute, of the integrations
+TOLERANCE = 1e-12  # relative and absolute
 
 
-def grid(times, size, lean=0.5):
-    """The grid of four-bars as a chain of `size` links: all rods of a row are parallel, so that the
-    points of a row share one displacement, with the masses of the row's rods on it."""
+def grid(times, size, lean=0.5, tolerance=TOLERANCE):
+    """The grid of four-bars as a chain of `size` links: all rods of a row are parallel, so that the points of a row share one
+    displacement, a complex number down + i across. A rod of m kg is as good as m/6 at each end and 4 m/6 in its middle."""
+    rows = numpy.tril(numpy.ones((size, size)))  # the displacement of row r is the sum over links 0..r
+    offsets = numpy.vstack([rows, rows - numpy.eye(size) / 2])  # of rows, of middles of upright rods
     upright, couplers = size + 1, size  # rods of 1 kg in each row
-    last = numpy.arange(size) == size - 1
-    mass = numpy.diag(upright / 3 * numpy.where(last, 1, 2) + couplers)
-    mass += numpy.diag([upright / 6] * (size - 1), 1) + numpy.diag([upright / 6] * (size - 1), -1)
-    weight = GRAVITY * (upright / 2 * numpy.where(last, 1, 2) + couplers)
-    below = numpy.tril(numpy.ones((size, size)))  # displacement of row r: sum over links 0..r
+    masses = numpy.repeat([upright / 3 + couplers, 4 / 6 * upright], size)
+    masses[size - 1] -= upright / 6
 
     def derivative(_, state):
-        theta, rate = state[:size], state[size:]
-        across, down = below * numpy.cos(theta), below * numpy.sin(theta)  # d x, d y by d theta
-        inertia = across.T @ mass @ across + down.T @ mass @ down
-        bend_x, bend_y = -below @ (numpy.sin(theta) * rate**2), below @ (numpy.cos(theta) * rate**2)
-        force = -across.T @ mass @ bend_x - down.T @ (mass @ bend_y + weight)
-        return numpy.concatenate([rate, numpy.linalg.solve(inertia, force)])
-    start = numpy.concatenate([numpy.full(size, lean), numpy.zeros(size)])
-    theta = _integrate(derivative, times, start)[:size]
-    x, y = below @ numpy.sin(theta), -below @ numpy.cos(theta)
-    middle = size // 2 - 1
-    return {"corner.x": size + x[-1], "corner.y": y[-1], "middle.x": size // 2 + x[middle], "middle.y": y[middle]}
+        turned, rates = numpy.exp(1j * state[:size]), state[size:]
+        return [*rates, *_accelerations(1j * offsets * turned, masses, masses * (GRAVITY + offsets @ (turned * rates**2)))]
+    at = rows @ numpy.exp(1j * integrate(derivative, times, [lean] * size + [0] * size, tolerance)[:size])
+    return {f"{name}.{axis}": part for name, links in (("corner", size), ("middle", size // 2))
+            for axis, part in (("x", links + at[links - 1].imag), ("y", -at[links - 1].real))}
 
 
-def slider_crank(times):
-    at_pin, at_slider = _slider_crank(
-        times, pivot=[0, 0, 0], radius=0.5, length=1.5, masses=(2, 3, 4), first=[1, 0, 0],
-        second=[0, 1, 0], start=(numpy.pi / 2, 0), torque=10, gravity=[0, -GRAVITY, 0])
-    return _columns("xy", crank=at_pin, slider=at_slider)
+def _accelerations(by, masses, force, inertia=0.0):
+    """Of coordinates. `by`: derivatives of places, complex numbers, by these; `force`: on the places' masses, less what bends their ways;
+    `inertia`: beside that of the masses."""
+    return numpy.linalg.solve((by.conj().T @ (masses[:, None] * by)).real + inertia, (by.conj().T @ force).real)
 
 
-def spatial_slider_crank(times):
-    at_pin, at_slider = _slider_crank(
-        times, pivot=[0, 0.1, 0.12], radius=0.08, length=0.3, masses=(0.12, 0.5, 2),
-        first=[0, 0, 1], second=[0, -1, 0], start=(0, 6), torque=0, gravity=[0, 0, -GRAVITY])
-    return _columns("xyz", crank=at_pin, slider=at_slider)
+def slider_crank(times, tolerance=TOLERANCE):
+    return _slider_crank(times, tolerance, "xy", pivot=[0, 0, 0], radius=0.5, length=1.5, masses=(2, 3, 4), first=[1, 0, 0],
+                         second=[0, 1, 0], start=(numpy.pi / 2, 0), torque=10, gravity=[0, -GRAVITY, 0])
 
 
-def _slider_crank(times, pivot, radius, length, masses, first, second, start, torque, gravity):
-    """One freedom: the crank's angle from `first` to `second`; the slider is on the x axis. With places
-    r(angle), inertia I = sum m |dr|^2: I angle'' + 1/2 dI angle'^2 = torque + sum m g.dr. Thin rods move
-    with their middle and turn about it. Returns places of pin and slider, (times, 3) each."""
+def spatial_slider_crank(times, tolerance=TOLERANCE):
+    return _slider_crank(times, tolerance, "xyz", pivot=[0, 0.1, 0.12], radius=0.08, length=0.3, masses=(0.12, 0.5, 2),
+                         first=[0, 0, 1], second=[0, -1, 0], start=(0, 6), torque=0, gravity=[0, 0, -GRAVITY])
+
+
+def _slider_crank(times, tolerance, axes, pivot, radius, length, masses, first, second, start, torque, gravity):
+    """One freedom: the crank's angle from `first` to `second`; the slider is on the x axis. With places r(angle) of pin and slider and
+    the mass matrix M of thin rods between them, inertia I = dr.M dr: I angle'' + dr.M ddr angle'^2 = torque + sum m g.dr."""
     pivot, first, second, gravity = map(numpy.array, (pivot, first, second, gravity))
     crank, rod, slider = masses
+    mass = numpy.array([[(crank + rod) / 3, rod / 6], [rod / 6, rod / 3 + slider]])
+    weight = numpy.outer([(crank + rod) / 2, rod / 2 + slider], gravity)
 
     def joints(angle):
-        """Pin and slider: place, first and second derivative with respect to the angle."""
-        along = radius * (first * numpy.cos(angle) + second * numpy.sin(angle))
-        pin = pivot + along, radius * (second * numpy.cos(angle) - first * numpy.sin(angle)), -along
-        (_, *a), (_, *da), (_, *dda) = map(numpy.array, pin)
+        """Pin and slider: places, first and second derivatives with respect to the angle."""
+        along, turned = (radius * (first * numpy.cos(at) + second * numpy.sin(at)) for at in (angle, angle + numpy.pi / 2))
+        (_, *a), (_, *da), (_, *dda) = pin = pivot + along, turned, -along
         ahead = (length**2 - numpy.dot(a, a)) ** 0.5
         d_ahead = -numpy.dot(a, da) / ahead
         dd_ahead = -(numpy.dot(da, da) + numpy.dot(a, dda) + d_ahead**2) / ahead
-        return pin, [numpy.array([at[0] + more, 0, 0]) for at, more in zip(pin, (ahead, d_ahead, dd_ahead))]
+        return [numpy.array([at, [at[0] + more, 0, 0]]) for at, more in zip(pin, (ahead, d_ahead, dd_ahead))]
 
     def derivative(_, state):
         angle, rate = state
-        (_, da, dda), (_, db, ddb) = joints(angle)
-        inertia = (crank * da @ da / 3 + slider * db @ db
-                   + rod * ((da + db) @ (da + db) / 4 + (db - da) @ (db - da) / 12))
-        half_change = slider * db @ ddb + rod * ((da + db) @ (dda + ddb) / 4 + (db - da) @ (ddb - dda) / 12)
-        force = torque + gravity @ (crank * da / 2 + rod * (da + db) / 2 + slider * db)
-        return [rate, (force - half_change * rate**2) / inertia]
-    angles = _integrate(derivative, times, start)[0]
-    return [numpy.array([joints(angle)[which][0] for angle in angles]) for which in (0, 1)]
+        _, d, dd = joints(angle)
+        return [rate, (torque + numpy.vdot(d, weight) - numpy.vdot(d, mass @ dd) * rate**2) / numpy.vdot(d, mass @ d)]
+    places = numpy.array([joints(angle)[0] for angle in integrate(derivative, times, start, tolerance)[0]])
+    return {f"{name}.{axis}": places[:, i, k] for i, name in enumerate(("crank", "slider")) for k, axis in enumerate(axes)}
 
 
-def governor(times):
+def governor(times, tolerance=TOLERANCE):
     """Both arms fall alike, so that there are three freedoms: the shaft's angle, the arms' angle below the
     horizontal, the slider's height. No torque about the shaft: J(down) spin is constant."""
     arm, ball, cube, shaft = 0.3, 5.0, 3.0, 0.3
@@ -104,18 +95,15 @@ def governor(times):
         by_down, by_height = (-across * sin - above * cos) / 2 / length, -above / length
         pull = stiffness * (length - free) + damping * (by_down * down_rate + by_height * height_rate)
         spin = momentum / inertia
-        return [spin, down_rate,
-                (change * spin**2 / 4 + GRAVITY * cos * (arm / 2 + ball) - pull * by_down)
-                / about_hinge,
+        return [spin, down_rate, (change * spin**2 / 4 + GRAVITY * cos * (arm / 2 + ball) - pull * by_down) / about_hinge,
                 height_rate, -GRAVITY - 2 * pull * by_height / cube]
-    turned, down, _, height, _ = _integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0), method="LSODA")
-    out, none = hinge + numpy.cos(down), numpy.zeros(len(times))
-    return _columns("xyz", slider=numpy.stack([none, height, none], axis=1),
-                    P1=numpy.stack([out * numpy.cos(turned), top - numpy.sin(down),
-                                    -out * numpy.sin(turned)], axis=1))
+    turned, down, _, height, _ = integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0), tolerance, "LSODA")
+    out = hinge + numpy.cos(down)
+    return {"slider.x": 0 * height, "slider.y": height, "slider.z": 0 * height,
+            "P1.x": out * numpy.cos(turned), "P1.y": top - numpy.sin(down), "P1.z": -out * numpy.sin(turned)}
 
 
-def half_car(times):
+def half_car(times, tolerance=TOLERANCE):
     """Four freedoms: the height of the front pivot, the angles of body and both arms. Places are complex
     numbers, x + iy = 0.8 + i height + sum of offset e^(i angle)."""
     pivot, behind = 0.8 - 0.15j, -1.0 - 0.15j  # in the body's axes, as the mounts
@@ -126,52 +114,47 @@ def half_car(times):
         [1.2 + 0.25j - pivot, 0, 0], [-1.4 + 0.25j - pivot, 0, 0]])                   # mounts
     masses = numpy.array([600, 8, 8, 40, 40, 0, 0])
     inertia = numpy.diag([0, 900, 8 * abs(front)**2 / 12, 8 * abs(rear)**2 / 12])
-
-    def places(state):
-        return 0.8 + 1j * state[0] + offsets @ numpy.exp(1j * state[1:4])
+    hubs, mounts, roads, phases = slice(3, 5), slice(5, 7), numpy.array([1.2, -1.4]), numpy.array([0, -1.6336281798666925])
 
     def derivative(t, state):
         turned, rates = numpy.exp(1j * state[1:4]), state[4:]
-        at = places(state)
-        by = 1j * numpy.hstack([numpy.ones((len(at), 1)), offsets * turned])
-        velocity, bend = by @ rates, -offsets @ (turned * rates[1:]**2)
-        force = -1j * GRAVITY * masses - masses * bend
-        for hub, mount, road, phase in ((3, 5, 1.2, 0), (4, 6, -1.4, -1.6336281798666925)):
-            wave = 3 * numpy.pi * t + phase
-            ground = road + 0.05j * numpy.sin(wave)
-            strut = _pull(at[mount] - at[hub], velocity[mount] - velocity[hub], 22000, 1500, 0.45)
-            tyre = _pull(ground - at[hub], 0.15j * numpy.pi * numpy.cos(wave) - velocity[hub], 180000, 200, 0.3)
-            force[hub] += strut + tyre
-            force[mount] -= strut
-        matrix = (by.conj().T @ (masses[:, None] * by)).real + inertia
-        return [*rates, *numpy.linalg.solve(matrix, (by.conj().T @ force).real)]
-    start = [0.35, 0, numpy.angle(front), numpy.angle(rear), 0, 0, 0, 0]
-    at = numpy.array([places(state) for state in _integrate(derivative, times, start).T])
+        at = 0.8 + 1j * state[0] + offsets @ turned
+        by = numpy.full((len(at), 4), 1j)
+        by[:, 1:] *= offsets * turned
+        velocity, force = by @ rates, masses * (offsets @ (turned * rates[1:]**2) - 1j * GRAVITY)
+        wave = 3 * numpy.pi * t + phases
+        strut = _pull(at[mounts] - at[hubs], velocity[mounts] - velocity[hubs], 22000, 1500, 0.45)
+        tyre = _pull(roads + 0.05j * numpy.sin(wave) - at[hubs], 0.15j * numpy.pi * numpy.cos(wave) - velocity[hubs], 180000, 200, 0.3)
+        force[hubs] += strut + tyre
+        force[mounts] -= strut
+        return [*rates, *_accelerations(by, masses, force, inertia)]
+    height, *angles = integrate(derivative, times, [0.35, 0, numpy.angle(front), numpy.angle(rear), 0, 0, 0, 0], tolerance)[:4]
+    at = 0.8 + 1j * height + offsets @ numpy.exp(1j * numpy.array(angles))
     return {f"{name}.{axis}": part for name, k in (("body", 0), ("front", 3), ("rear", 4))
-            for axis, part in (("x", at[:, k].real), ("y", at[:, k].imag))}
+            for axis, part in (("x", at[k].real), ("y", at[k].imag))}
+
+
+def double_pendulum(lengths, masses):
+    """Of two thin rods, whatever they weigh: what integrates their angles from the downward vertical, then the rates of these."""
+    (upper, lower), (mass, end) = lengths, masses
+
+    def derivative(_, state):
+        a, b, da, db = state.tolist()  # numbers of Python's own, ten times as fast
+        sine, cosine = upper * lower / 2 * math.sin(a - b), upper * lower / 2 * math.cos(a - b)
+        (p, q), (r, s) = (upper**2 * (mass / 3 + end), end * cosine), (cosine, lower**2 / 3)  # that of the lower rod divided by its mass
+        force = -end * sine * db**2 - GRAVITY * upper * (mass / 2 + end) * math.sin(a)
+        other = sine * da**2 - GRAVITY * lower / 2 * math.sin(b)
+        return [da, db, (s * force - q * other) / (p * s - q * r), (p * other - r * force) / (p * s - q * r)]
+    return derivative
 
 
 def _pull(between, rate, stiffness, damping, free):
-    """The force of a spring towards its other end, which is at `between` and moves at `rate`."""
+    """The forces of springs towards their other ends, which are at `between` and move at `rate`."""
     length = abs(between)
     along = between / length
     return along * (stiffness * (length - free) + damping * (along.conjugate() * rate).real)
 
 
-@contextmanager
-def tolerance(value):
-    """Inside, solutions are integrated to another tolerance: what that changes is about their error."""
-    global TOLERANCE
-    usual, TOLERANCE = TOLERANCE, value
-    try:
-        yield
-    finally:
-        TOLERANCE = usual
-
-
-def _integrate(derivative, times, start, method="DOP853"):
-    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=TOLERANCE, atol=TOLERANCE).y
-
-
-def _columns(axes, **places):
-    return {f"{name}.{axis}": at[:, k] for name, at in places.items() for k, axis in enumerate(axes)}
+def integrate(derivative, times, start, tolerance=TOLERANCE, method="DOP853"):
+    span = 0, max(times[-1], 1e-9)  # the start alone may be asked for
+    return solve_ivp(derivative, span, start, method, times, rtol=tolerance, atol=tolerance).y

@@ -13,9 +13,7 @@ CLASSES = (("high", 1e-3), ("low", 1e-1))
 
 def errors(found, known):
     """(root mean square, maximum) over samples and components of {column: values} each."""
-    relative = numpy.array([(found[column] - known[column])
-                            / numpy.maximum(numpy.abs(known[column]), THRESHOLD)
-                            for column in known])
+    relative = numpy.array([(found[column] - known[column]) / numpy.maximum(numpy.abs(known[column]), THRESHOLD) for column in known])
     return float(numpy.sqrt(numpy.mean(relative**2))), float(numpy.max(numpy.abs(relative)))
 
 

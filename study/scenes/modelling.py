@@ -26,9 +26,7 @@ class Case:
     steps: int = STRETCH   # of the stretch; and of the run, where that is the early one
     base: str = PLAIN      # the case that it is compared with
 
-    @property
-    def file_name(self):
-        return slug(self.name)
+    file_name = property(lambda self: slug(self.name))
 
 
 BEFORE = "plain, before singular"
@@ -64,19 +62,15 @@ def scenes(loops):
         PLAIN: plain,
         "unknown grounds": plain | {
             "points": [{"name": p["name"], "position": p["position"]} for p in ground] + moving,
-            "constraints": [held(axis, f"A{i}", value) for i in range(loops + 1)
-                            for axis, value in (("x", i), ("y", 0))]},
+            "constraints": [held(axis, f"A{i}", value) for i in range(loops + 1) for axis, value in (("x", i), ("y", 0))]},
         "spatial": plain | {
             "dimension": 3, "gravity": [0, -9.81, 0],
-            "points": [p | {key: p[key] + [0] for key in ("position", "velocity") if key in p}
-                       for p in ground + moving],
+            "points": [p | {key: p[key] + [0] for key in ("position", "velocity") if key in p} for p in ground + moving],
             "constraints": [held("z", f"B{i}", 0) for i in range(loops + 1)]},
         "zero springs": plain | {"springs": springs(stiffness=0)},
         "springs": plain | {"springs": springs(stiffness=FAINT)},
         "dampers": plain | {"springs": springs(stiffness=FAINT, damping=FAINT)},
-        "redundant": plain | {"rods": rods + [{"between": [f"B{i - 2}", f"B{i}"], "mass": 0}
-                                              for i in range(2, loops + 1)]},
-    }
+        "redundant": plain | {"rods": rods + [{"between": [f"B{i - 2}", f"B{i}"], "mass": 0} for i in range(2, loops + 1)]}}
 
 
 def slug(name):

@@ -29,9 +29,8 @@ class Problem:
     everyone: bool = False
     published: str | None = None
 
-    @property
-    def settings(self):
-        return ("--penalty", f"{self.penalty}", "--tolerance", f"{self.tolerance}", "--max-passes", f"{self.max_passes}")
+    options = property(lambda self: (("penalty", f"{self.penalty}"), ("tolerance", f"{self.tolerance}"), ("max-passes", f"{self.max_passes}")))
+    settings = property(lambda self: tuple(word for option, value in self.options for word in (f"--{option}", value)))
 
     def columns(self, outputs):
         """The columns of the judged outputs, in the order of the file."""

@@ -13,8 +13,8 @@ from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import SOLVERS
 from study.core.cell import Contender
 from study.core.curves import Curve, follow, of_no_use, too_long
-from study.engines import plan, settings
-from study.engines.settings import EngineSetting, read_list
+from study.engines import plan
+from study.engines.plan import EngineSetting, read_list
 from study.scenes.references import andrews_end
 from study.tests.conftest import ROOT
 
@@ -245,7 +245,7 @@ REAL = [one for found in read_list().values() for one in found if program(one.en
 
 @pytest.mark.parametrize("engine", sorted({one.engine for one in REAL}))
 def test_every_setting_means_something_to_its_program(engine):
-    for setting in settings.read_list()[engine]:
+    for setting in read_list()[engine]:
         done = subprocess.run([program(engine), "--loops", "1", "--duration", "0.05", *setting.words(setting.values[2]),
                                "--json"], capture_output=True, text=True)
         output = json.loads(done.stdout)
@@ -277,7 +277,7 @@ def error(name, form, accuracy):
     done = subprocess.run([program("ida"), *words], capture_output=True, text=True, cwd=ROOT)
     output = json.loads(done.stdout)
     assert output["status"] in ("ok", "degraded"), output
-    return subject.engine_error(output)
+    return subject.error(SimpleNamespace(output=output, series={}), True)
 
 
 @pytest.mark.skipif(not program("ida").exists(), reason="engine_ida is not built")

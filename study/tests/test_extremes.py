@@ -19,7 +19,7 @@ from study.core.cell import Contender
 from study.core.lab import Lab
 from study.core.studyset import StudySet, start
 from study.extremes import plan
-from study.scenes.references import four_bar
+from study.scenes.references import four_bar, turning
 from study.tests.conftest import PROGRAM
 
 TIMES = numpy.linspace(0, 3, 31)
@@ -29,10 +29,10 @@ CHAINS = [Chain(3, angle=numpy.pi / 2, rate=0.0), Chain(3, angle=numpy.pi / 2, r
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_motions_solve_their_equation_of_motion(chain):
-    angles, _ = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
-                              t_eval=TIMES, rtol=1e-10, atol=1e-12, method="DOP853").y
-    sine, cosine = chain.phi(TIMES)
-    assert abs(sine - numpy.sin(angles)).max() < 1e-7 and abs(cosine - numpy.cos(angles)).max() < 1e-7
+    angles, rates = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
+                              t_eval=TIMES, rtol=1e-12, atol=1e-12, method="DOP853").y
+    found = turning(TIMES, chain.k, chain.angle, chain.rate)
+    assert abs(found - numpy.array([numpy.sin(angles), numpy.cos(angles), rates])).max() < 1e-7
 
 
 def test_motions_are_those_of_the_four_bar_and_scale_with_length():
@@ -142,7 +142,7 @@ def test_what_is_kept_judges_every_loop_and_every_turn():
         instants = cell.steps // cell.every
         assert instants >= min(cell.steps, cells.INSTANTS)
         if cell.motion and cell.loops <= 5:
-            assert set(cell.columns) == set(cell.motion.solutions([0.0])[0])
+            assert set(cell.columns) == set(cell.motion.solutions(numpy.zeros(1))[0])
         assert len(cell.columns) * instants < 4000  # numbers of a record
     assert Chain(1000).columns[::2] == ("B0.x", "B200.x", "B400.x", "B600.x", "B800.x", "B1000.x")
 

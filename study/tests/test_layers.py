@@ -11,6 +11,7 @@ from analysis.core.parts import pages, parts
 
 BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
                ("extremes", "scenes"),  # the same problems
+               ("engines", "scenes"),   # equations of motion
                ("limit", "scenes"),     # the same scenes
                ("families", "limit"),   # looks, gates and times of a scene
                ("tuning", "limit")}     # cells and verdicts of a scene

@@ -194,7 +194,7 @@ def test_what_a_profile_names_exists(profile):
     settings = yaml.safe_load((ROOT / "study/profiles" / f"{profile}.yaml").read_text())["parts"]["limit"]
     found = plan.listed(settings)
     assert len(found) == sum(len(settings[key]) for key in ("problems", "examples", "fills"))
-    assert all((ROOT / scene.name).is_file() for scene in found if scene.name.endswith(".json"))
+    assert all((ROOT / scene).is_file() for scene, _, _ in found if scene.endswith(".json"))
 
 
 @pytest.mark.slow

@@ -13,9 +13,8 @@ SETTINGS = {"scenes": list,     # the most telling first
 
 def alternatives(lab):
     """The gate; then, a scene at a time, whoever it agrees with."""
-    here = asked(lab)
-    gates = [Asked(scene, here) for scene in lab.settings["scenes"] if here]
-    for scene, good in zip(lab.settings["scenes"], agreeing(lab, gates, each=CHECK_S, seconds=4 * CHECK_S, drop=True)):
+    here, scenes = asked(lab), lab.settings["scenes"]
+    for scene, good in zip(scenes, agreeing(lab, [Asked(one, here) for one in scenes if here], each=CHECK_S, seconds=4 * CHECK_S, drop=True)):
         measure(lab, scene, good, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
                 settings=("--steps", lab.settings["steps"]))
 
