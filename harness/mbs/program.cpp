@@ -182,7 +182,9 @@ int run_program(int argc, char** argv) {
     refuse_misread(*command);
     command->footer(kExits);
   }
-  for (const char* name : {"describe", "check", "reference"}) app.get_subcommand(name)->footer(kScenes);
+  for (const char* name : {"describe", "check", "reference"}) {
+    app.get_subcommand(name)->footer(fmt::format("{}\n{}", kScenes, kExits));
+  }
   for (const auto& [name, scenes] : {std::pair("simulate", kScenes), std::pair("sweep", kVaried)}) {
     app.get_subcommand(name)->footer(std::string(scenes) + "\n\n" + outcomes_text());
   }
