@@ -88,7 +88,7 @@ def _pilots(advice, settings, run):
 
     def pilot(setting, step):
         name = advice.serving(setting)[0]
-        usual = search.found[setting].step_us()
+        usual = advice.found[setting].step_us()
         expected = 3e-6 * run.slowdown * duration / step * (advice.speeds[name] if math.isnan(usual) else usual)
         if expected > run.left(PILOT_SHARE):
             return None
@@ -104,9 +104,8 @@ def _pilots(advice, settings, run):
         steps = max(LEAST_STEPS, round(question.budget * QUICK_SHARE / (REPEATS * 1e-6 * advice.speeds[name])))
         row = run("quick", setting, name, step, min(duration, steps * step), run.slowdown * question.budget / 30)
         return math.inf if row["status"] == "timeout" else row["step_us"]
-    search = Search(settings, pilot, quick, error=advice.pilot_error, duration=duration, start=start,
-                    deadline_us=question.deadline_us, step=question.step)
-    advice.found = search.search()
+    search = Search(advice, settings, pilot, quick)
+    search.search()
     if search.cut:
         advice.hurry("some error pilots would have taken longer than the time left")
 

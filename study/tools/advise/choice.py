@@ -1,5 +1,6 @@
 # From error estimates at some steps: which of them count, which step comes next, which step is chosen.
 import math
+from collections import namedtuple
 from dataclasses import dataclass
 
 from analysis.core.outcomes import FINISHED
@@ -25,12 +26,8 @@ class Pilot:
     valid = property(lambda self: self.status in FINISHED and self.estimate is not None)
 
 
-@dataclass(frozen=True)
-class Next:
-    """What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or given up for a reason."""
-    step: float | None = None
-    chosen: float | None = None
-    reason: str = ""
+# What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or given up for a reason.
+Next = namedtuple("Next", "step chosen reason", defaults=(None, None, ""))
 
 
 def halvings(pilots):

@@ -38,17 +38,15 @@ class Found:
 
 
 class Search:
-    """`run(setting, step)` gives a Pilot, `quick(setting, step)` the time of a step in a short run, us; None if no time is left."""
+    """Fills `advice.found`. `run(setting, step)` gives a Pilot, `quick(setting, step)` a short run's time of a step, us; None if no time is left."""
 
-    def __init__(self, settings, run, quick, *, error, duration, start, deadline_us=None, step=None):
-        self.found = {setting: Found(setting) for setting in settings}
-        self.run, self.quick, self.error, self.duration, self.start = run, quick, error, duration, start
-        self.deadline_us = deadline_us or math.inf
-        self.step = step  # where only one may be chosen
-        self.cut = False
+    def __init__(self, advice, settings, run, quick):
+        self.found = advice.found = {setting: Found(setting) for setting in settings}
+        self.asked, self.step, self.error, self.duration = advice.question, advice.question.step, advice.pilot_error, advice.pilot_duration
+        self.run, self.quick, self.cut = run, quick, False
 
     def search(self):
-        """Pilots until every setting has a step, or a reason why it has none; {setting: Found}."""
+        """Pilots until every setting has a step, or a reason why it has none."""
         while ready := [one for one in self.found.values() if one.open and self._ready(one)]:
             self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)))
         for one in self.found.values():
@@ -56,7 +54,6 @@ class Search:
                 one.reason = "its steps take far longer than those of other settings"
             elif one.open:
                 one.reason = f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest {self.best() / 1e3:.3g}"
-        return self.found
 
     def best(self):
         """Least time of a simulated second among the settings that have a step, us."""
@@ -75,7 +72,7 @@ class Search:
             at = where = self.step
         else:
             best = min((other for other in self.found.values() if other.chosen), key=self.promise, default=None)
-            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.start), self.start
+            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.asked.first_step), self.asked.first_step
         if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
             one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
                             or (parent.step_us() if self._tells(parent) else 0.0))
@@ -110,7 +107,7 @@ class Search:
 
     def _advance(self, one):
         parent, order = self.parent(one), one.setting.order
-        start = parent.rung() if self._tells(parent) else self.start
+        start = parent.rung() if self._tells(parent) else self.asked.first_step
         after = (next_at(self.step, one.pilots, self.error, order, self.duration) if self.step else
                  next_step(one.pilots, self.error, order, start, self.duration))
         if after.step is None:
@@ -146,5 +143,5 @@ class Search:
         one.chosen, one.reason = chosen, "" if chosen else reason
         if chosen:
             one.chosen_us = self.quick(one.setting, chosen) or one.step_us()
-            if one.chosen_us > self.deadline_us:
+            if one.chosen_us > (self.asked.deadline_us or math.inf):
                 one.chosen, one.reason = None, f"a step takes {one.chosen_us:.3g} us, beyond the deadline"
