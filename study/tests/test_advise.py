@@ -20,10 +20,9 @@ from study.tools.advise import answer, evidence, timing, validate
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import duration
-from study.tools.advise.probe import find_speeds, named
+from study.tools.advise.probe import catalogue, find_speeds, fits, named, serving
 from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
-from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
 from study.tools.advise.validate import _compare, _reference, fastest, search as exhaustive
 from study.tools.advise.verify import verify, what_helps

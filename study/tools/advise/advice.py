@@ -4,10 +4,9 @@ from dataclasses import dataclass, field
 
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, tidy
-from study.tools.advise.probe import find_speeds
+from study.tools.advise.probe import find_speeds, fits, serving
 from study.tools.advise.runner import REPEATS
 from study.tools.advise.search import Search
-from study.tools.advise.settings import fits, serving
 from study.tools.advise.verify import verify, what_helps
 
 FIRST_STEP = 1e-2  # s; of the first pilot, where the run has enough such steps

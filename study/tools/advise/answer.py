@@ -5,9 +5,9 @@ from dataclasses import asdict
 from analysis.core.outcomes import FINISHED, GOOD
 from analysis.core.text import number
 from study.tools.advise.choice import counts, halvings
+from study.tools.advise.probe import catalogue, fits, serving
 from study.tools.advise.runner import advised
 from study.tools.advise.search import Found
-from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.verify import expected_error
 
 MOST_REASONS = 3  # of pilots that were lost
@@ -57,7 +57,7 @@ def _advised(advice):
 def _setting(setting, advice):
     found = advice.found.get(setting) or Found(setting, reason=fits(setting, advice.described) or (
         "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it"))
-    pilots = [asdict(pilot) | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
+    pilots = [pilot._asdict() | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
               for pilot in found.pilots]
     return {"setting": setting.name, "step": found.chosen, "pilots": pilots, "reason": found.reason}
 

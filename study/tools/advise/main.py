@@ -16,8 +16,8 @@ from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
 from study.tools.advise.evidence import BEGUN
+from study.tools.advise.probe import catalogue
 from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
-from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
 from study.tools.shelf import open_shelf
 

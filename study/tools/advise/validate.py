@@ -10,9 +10,8 @@ from study.core.setting import Setting, read_settings
 from study.core.studyset import describe, listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
-from study.tools.advise.probe import probe
+from study.tools.advise.probe import catalogue, fits, probe, serving
 from study.tools.advise.runner import EXACT, folder_of, scene_name
-from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"

@@ -1,6 +1,7 @@
 # What several sets say of the same question: per scene and layer, who is among the best on each machine, and on all.
 import math
 import re
+from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy
@@ -23,13 +24,7 @@ ALIKE = ("commit", "compiler", "flags", "build_type", "libraries", "blas", "blas
 SYSTEM = re.compile(r"[\w-]+-linux-gnu")  # in paths: a library of another architecture is the same one
 
 
-@dataclass(frozen=True)
-class Question:
-    part: str
-    scene: str
-    form: str  # of the step
-    layer: str
-    variables: float
+Question = namedtuple("Question", "part scene form layer variables")  # form: of the step
 
 
 def unlike(first, other):
