@@ -1,5 +1,6 @@
 # The advice on one scene: the question, what becomes known, and its stages one after the other.
 import math
+from collections import namedtuple
 from dataclasses import dataclass, field
 
 from study.tools.advise import timing
@@ -15,15 +16,8 @@ PILOT_SHARE, TIMING_SHARE = 0.6, 0.8  # of the budget: when pilots, when timings
 QUICK_SHARE = 1 / 500  # of the budget: a run for the time of a setting's step
 
 
-@dataclass
-class Question:
-    scene: str
-    error: float
-    duration: float
-    deadline_us: float | None
-    budget: float  # s
-    step: float | None = None  # s, where it is given
-
+class Question(namedtuple("Question", "scene error duration deadline_us budget step", defaults=(None,))):
+    """`budget`: s; `step`: s, where it is given."""
     first_step = property(lambda self: self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS)))
 
 

@@ -1,6 +1,5 @@
 # The answer as JSON (its keys: README.md) and as text.
 import math
-from dataclasses import asdict
 
 from analysis.core.outcomes import FINISHED, GOOD
 from analysis.core.text import number
@@ -20,7 +19,7 @@ def as_json(advice, run, folder):
     candidates = [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step, "advised": met and one is advice.chosen,
                    "reason": one.reason} | _times(one) for one in advice.candidates]
     told = _advised(advice) if met else None
-    return {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met, "advice": told,
+    return {"question": {name: value for name, value in advice.question._asdict().items() if name != "budget"}, "met": met, "advice": told,
             "runner_up": _runner_up(candidates, told) if met else None, "refused": _refused(advice) if met else [],
             "why_not": None if met else _why_not(advice), "helps": advice.helps, "pilot_duration": advice.pilot_duration,
             "cut_short": advice.cut_short + _busy(run.waited), "seconds": round(run.seconds, 2), "waited": round(run.waited, 3),

@@ -3,7 +3,6 @@ import json
 import math
 import sys
 import time
-from dataclasses import asdict
 from functools import partial
 
 from analysis.core.errors import StudyError
@@ -78,7 +77,7 @@ def ask(options, folder=None):
     question = Question(options.scene[0], options.error, duration(options.scene[0], options.duration, described),
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
-    inputs = asdict(question) | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
+    inputs = question._asdict() | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
     folder = folder or options.results or DEFAULT / folder_of(scene, inputs, names, digest(ROOT / program_of()))
     writable(folder)
     spent = time.monotonic() - began

@@ -2,7 +2,6 @@
 import math
 import re
 from collections import namedtuple
-from dataclasses import dataclass
 
 import numpy
 import pandas
@@ -90,11 +89,8 @@ def _families(studyset):
             yield Question("families", scene, form, "libraries", group.variables.iloc[0]), Ranking(next(iter(ratios)), ratios)
 
 
-@dataclass(frozen=True)
-class Agreement:
+class Agreement(namedtuple("Agreement", "question machines")):
     """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
-    question: Question
-    machines: tuple
 
     @property
     def sets(self):
