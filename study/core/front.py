@@ -120,9 +120,8 @@ def _why(log, begin):
     with open(log, encoding="utf-8", errors="replace") as file:
         file.seek(begin)
         lines = [line.strip() for line in file]
-    for line in lines:
-        if line.startswith("error: "):
-            return line.removeprefix("error: ")
+    if said := [line for line in lines if line.startswith("error: ")]:
+        return said[0].removeprefix("error: ")
     wrong = [line for line in lines[-12:] if "rror" in line]
     return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
