@@ -120,17 +120,13 @@ def _why(log, begin):
     with open(log, encoding="utf-8", errors="replace") as file:
         file.seek(begin)
         lines = [line.strip() for line in file]
-    for line in lines:
-        if line.startswith("error: "):
-            return line.removeprefix("error: ")
+    if said := [line for line in lines if line.startswith("error: ")]:
+        return said[0].removeprefix("error: ")
     wrong = [line for line in lines[-12:] if "rror" in line]
     return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
 
 def duration(seconds):
-    seconds = max(0, round(seconds))
-    if seconds < 60:
-        return f"{seconds} s"
-    if seconds < 3600:
-        return f"{seconds // 60} min {seconds % 60} s"
-    return f"{seconds // 3600} h {seconds % 3600 // 60} min"
+    minutes, seconds = divmod(max(0, round(seconds)), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds} s" if minutes else f"{seconds} s"

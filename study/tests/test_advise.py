@@ -20,10 +20,9 @@ from study.tools.advise import answer, evidence, timing, validate
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import duration
-from study.tools.advise.probe import find_speeds, named
+from study.tools.advise.probe import catalogue, find_speeds, fits, named, serving
 from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
-from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
 from study.tools.advise.validate import _compare, _reference, fastest, search as exhaustive
 from study.tools.advise.verify import verify, what_helps
@@ -104,9 +103,14 @@ def search(errors, times, settings, **more):
     def run(setting, step):
         value = errors[setting](step)
         return Pilot(step, "ok", value, times[setting]) if value is not None else Pilot(step, "diverged", None, times[setting])
-    made = Search(settings, run, lambda setting, step: times[setting],
-                  **({"error": 1e-3, "duration": 1.0, "start": 1e-2} | more))
-    return made, made.search()
+    return searched_by(run, lambda setting, step: times[setting], settings, **more)
+
+
+def searched_by(run, quick=lambda *_: 1.0, settings=(PENALTY,), **more):
+    """(the Search, what it found)"""
+    made = Search(asked(**more), settings, run, quick)
+    made.search()
+    return made, made.found
 
 
 def square(step):
@@ -138,7 +142,7 @@ def test_a_pilot_that_fails_voids_no_step_that_others_have_shown(status):
     """As a driver that turns too far in a long step, which is refused."""
     def run(setting, step):
         return Pilot(step, status, None, reason="too long") if step > 1.5e-2 else Pilot(step, "ok", 1e-4 * step**2, 1.0)
-    [one] = Search([PENALTY], run, lambda *_: 1.0, error=1e-3, duration=1.0, start=1e-2).search().values()
+    [one] = searched_by(run)[1].values()
     assert one.chosen >= 1e-2 if status == "refused" else one.chosen or one.reason.startswith("crashed: too long")
 
 
@@ -167,14 +171,13 @@ def test_a_given_step_is_shown_by_half_of_it_and_no_other_is_chosen():
 
 
 def test_without_time_nothing_is_made_up():
-    made = Search([PENALTY], lambda setting, step: None, lambda *_: 1.0, error=1e-3, duration=1.0, start=1e-2)
-    found = made.search()
+    made, found = searched_by(lambda setting, step: None)
     assert made.cut and found[PENALTY].chosen is None and "no time was left" in found[PENALTY].reason
 
 
 def test_a_setting_that_is_refused_or_late_is_not_tried_again():
     refused = lambda setting, step: Pilot(step, "unsupported", None, reason="not served")
-    [one] = Search([PENALTY], refused, lambda *_: None, error=1, duration=1.0, start=1e-2).search().values()
+    [one] = searched_by(refused, lambda *_: None, error=1)[1].values()
     assert one.reason == "unsupported: not served" and not one.pilots
     _, found = search({PENALTY: lambda step: step}, {PENALTY: 30.0}, [PENALTY], deadline_us=10.0)
     assert found[PENALTY].reason == "a step takes 30 us, beyond the deadline"

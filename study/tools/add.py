@@ -2,7 +2,7 @@
 # fresh processes: what the set has of the others is never paired with new samples. README.md has what it leaves.
 import datetime
 import shutil
-from collections import Counter
+from collections import Counter, namedtuple
 from dataclasses import dataclass
 
 from analysis.core import schema, timing
@@ -82,21 +82,9 @@ class _Present(StudySet):
         return {"context": next(iter(self.present.values()))}
 
 
-@dataclass(frozen=True, eq=False)
-class Contest:
+class Contest(namedtuple("Contest", "part scene scheme variables led form stretch steps start times newcomers")):
     """A scene and form of the step that somebody leads in the set. `led`: rows with layer, winner and second; `form`, `stretch`: words of
     the command line, as the set's records have them; `steps`, `start`: of the stretch; `times`: µs a step, for the number of samples only."""
-    part: str
-    scene: str
-    scheme: str
-    variables: float
-    led: list
-    form: tuple
-    stretch: tuple
-    steps: float
-    start: float
-    times: dict
-    newcomers: list
 
     def rivals(self, there):
         """The leader and the runner-up of the libraries, and the leader of all; those that are still there."""
@@ -139,18 +127,18 @@ def measured(folder, name, known):
     _begin(folder, column, lab)
     print(f"{len(asked)} contests of {folder}, at most {duration(lab.budget)}", flush=True)
     verdicts = _gates(lab, asked, contenders)
-    records, share = {}, 0.6 * lab.left / max(1, len(asked) * PASSES[-1])
+    records, share = [[] for _ in asked], 0.6 * lab.left / max(1, len(asked) * PASSES[-1])
     for count in PASSES:
-        for one in asked:
-            fit = [contenders[name] for name in one.newcomers if verdicts[one][name][0] == "ok"]
+        for place, one in enumerate(asked):
+            fit = [contenders[name] for name in one.newcomers if verdicts[place][name][0] == "ok"]
             chosen = one.rivals(contenders)
             if fit and chosen:
                 fit += [contenders[name] for name in chosen]
-                records[one] = measure(lab, one.scene, fit, processes=count, **_size(share, one, chosen))
+                records[place] = measure(lab, one.scene, fit, processes=count, **_size(share, one, chosen))
     lab.display.end()
     context = present[contenders[newcomers[0]].environment]
-    rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one in asked
-            for row in _rows(one, known, verdicts[one], records.get(one, []))]
+    rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one, said, found in zip(asked, verdicts, records)
+            for row in _rows(one, known, said, found)]
     return _finish(folder, column, lab, rows)
 
 
@@ -189,12 +177,12 @@ def _begin(folder, column, lab):
 
 
 def _gates(lab, asked, contenders):
-    """{contest: {newcomer: (status, reason)}}"""
+    """[{newcomer: (status, reason)}] of each contest"""
     whole, lab.budget = lab.budget, GATES * lab.budget
     found = verdicts(lab, [Asked(one.scene, [contenders[name] for name in one.newcomers], settings=one.form) for one in asked],
                      each=GATE_S, seconds=2 * GATE_S, drop=True)
     lab.budget = whole
-    return {one: {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()} for one, said in zip(asked, found)}
+    return [{who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()} for said in found]
 
 
 def _size(share, contest, rivals):

@@ -102,32 +102,27 @@ def _build(studyset, name):
         shutil.rmtree(path)
     building = RESULTS / f".storing-{name}"
     try:
-        pictures = _fill(studyset, building)
+        building.mkdir(parents=True)
+        for shared in OF_ALL:
+            source = studyset.folder / shared
+            (shutil.copytree if source.is_dir() else shutil.copyfile)(source, building / shared)
+        for part in studyset.facts["parts"]:
+            (building / part).mkdir()
+            for path in sorted(path for path in (studyset.folder / part).iterdir() if path.suffix in (".csv", ".json")):
+                shutil.copyfile(path, building / part / path.name)
+            records.pack(studyset.folder, part, records.archive_of(building, part))
+            if schema.digest_of(records.read_part(building, part)) != read_json(building / part / schema.DIGESTS)["records"]:
+                raise StudyError(f"{studyset.folder / 'raw' / part} changed while it was stored")
+        pictures = sorted({tail for text in fragments.texts() for tail in SHOWN.findall(text.read_text(encoding="utf-8"))
+                           if (studyset.folder / tail).exists()})
+        for tail in pictures:
+            (building / tail).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(studyset.folder / tail, building / tail)
         os.rename(building, RESULTS / name)
     except OSError as error:
         raise StudyError(f"cannot store results/{name}: {error.strerror}") from error
     finally:
         shutil.rmtree(building, ignore_errors=True)
-    return pictures
-
-
-def _fill(studyset, building):
-    building.mkdir(parents=True)
-    for name in OF_ALL:
-        source = studyset.folder / name
-        (shutil.copytree if source.is_dir() else shutil.copyfile)(source, building / name)
-    for part in studyset.facts["parts"]:
-        (building / part).mkdir()
-        for path in sorted(path for path in (studyset.folder / part).iterdir() if path.suffix in (".csv", ".json")):
-            shutil.copyfile(path, building / part / path.name)
-        records.pack(studyset.folder, part, records.archive_of(building, part))
-        if schema.digest_of(records.read_part(building, part)) != read_json(building / part / schema.DIGESTS)["records"]:
-            raise StudyError(f"{studyset.folder / 'raw' / part} changed while it was stored")
-    pictures = sorted({tail for text in fragments.texts() for tail in SHOWN.findall(text.read_text(encoding="utf-8"))
-                       if (studyset.folder / tail).exists()})
-    for tail in pictures:
-        (building / tail).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(studyset.folder / tail, building / tail)
     return pictures
 
 

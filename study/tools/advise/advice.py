@@ -1,13 +1,13 @@
 # The advice on one scene: the question, what becomes known, and its stages one after the other.
 import math
+from collections import namedtuple
 from dataclasses import dataclass, field
 
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, tidy
-from study.tools.advise.probe import find_speeds
+from study.tools.advise.probe import find_speeds, fits, serving
 from study.tools.advise.runner import REPEATS
 from study.tools.advise.search import Search
-from study.tools.advise.settings import fits, serving
 from study.tools.advise.verify import verify, what_helps
 
 FIRST_STEP = 1e-2  # s; of the first pilot, where the run has enough such steps
@@ -16,15 +16,8 @@ PILOT_SHARE, TIMING_SHARE = 0.6, 0.8  # of the budget: when pilots, when timings
 QUICK_SHARE = 1 / 500  # of the budget: a run for the time of a setting's step
 
 
-@dataclass
-class Question:
-    scene: str
-    error: float
-    duration: float
-    deadline_us: float | None
-    budget: float  # s
-    step: float | None = None  # s, where it is given
-
+class Question(namedtuple("Question", "scene error duration deadline_us budget step", defaults=(None,))):
+    """`budget`: s; `step`: s, where it is given."""
     first_step = property(lambda self: self.step or min(FIRST_STEP, self.duration / (5 * LEAST_STEPS)))
 
 
@@ -88,7 +81,7 @@ def _pilots(advice, settings, run):
 
     def pilot(setting, step):
         name = advice.serving(setting)[0]
-        usual = search.found[setting].step_us()
+        usual = advice.found[setting].step_us()
         expected = 3e-6 * run.slowdown * duration / step * (advice.speeds[name] if math.isnan(usual) else usual)
         if expected > run.left(PILOT_SHARE):
             return None
@@ -104,9 +97,8 @@ def _pilots(advice, settings, run):
         steps = max(LEAST_STEPS, round(question.budget * QUICK_SHARE / (REPEATS * 1e-6 * advice.speeds[name])))
         row = run("quick", setting, name, step, min(duration, steps * step), run.slowdown * question.budget / 30)
         return math.inf if row["status"] == "timeout" else row["step_us"]
-    search = Search(settings, pilot, quick, error=advice.pilot_error, duration=duration, start=start,
-                    deadline_us=question.deadline_us, step=question.step)
-    advice.found = search.search()
+    search = Search(advice, settings, pilot, quick)
+    search.search()
     if search.cut:
         advice.hurry("some error pilots would have taken longer than the time left")
 

@@ -1,12 +1,12 @@
 # The answer as JSON (its keys: README.md) and as text.
 import math
-from dataclasses import asdict
 
 from analysis.core.outcomes import FINISHED, GOOD
 from analysis.core.text import number
 from study.tools.advise.choice import counts, halvings
+from study.tools.advise.probe import catalogue, fits, serving
 from study.tools.advise.runner import advised
-from study.tools.advise.settings import catalogue, fits, serving
+from study.tools.advise.search import Found
 from study.tools.advise.verify import expected_error
 
 MOST_REASONS = 3  # of pilots that were lost
@@ -19,7 +19,7 @@ def as_json(advice, run, folder):
     candidates = [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step, "advised": met and one is advice.chosen,
                    "reason": one.reason} | _times(one) for one in advice.candidates]
     told = _advised(advice) if met else None
-    return {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"}, "met": met, "advice": told,
+    return {"question": {name: value for name, value in advice.question._asdict().items() if name != "budget"}, "met": met, "advice": told,
             "runner_up": _runner_up(candidates, told) if met else None, "refused": _refused(advice) if met else [],
             "why_not": None if met else _why_not(advice), "helps": advice.helps, "pilot_duration": advice.pilot_duration,
             "cut_short": advice.cut_short + _busy(run.waited), "seconds": round(run.seconds, 2), "waited": round(run.waited, 3),
@@ -54,11 +54,9 @@ def _advised(advice):
 
 
 def _setting(setting, advice):
-    found = advice.found.get(setting)
-    if not found:
-        return {"setting": setting.name, "step": None, "pilots": [], "reason": fits(setting, advice.described) or (
-            "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it")}
-    pilots = [asdict(pilot) | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
+    found = advice.found.get(setting) or Found(setting, reason=fits(setting, advice.described) or (
+        "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it"))
+    pilots = [pilot._asdict() | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
               for pilot in found.pilots]
     return {"setting": setting.name, "step": found.chosen, "pilots": pilots, "reason": found.reason}
 

@@ -1,6 +1,6 @@
 # From error estimates at some steps: which of them count, which step comes next, which step is chosen.
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 
 from analysis.core.outcomes import FINISHED
 
@@ -13,24 +13,14 @@ TIDY = 0.05        # share that a step may become shorter to be a tidy number
 JUMP = 8           # a pilot's step is at least this part of the one before it
 
 
-@dataclass(frozen=True)
-class Pilot:
-    """A run at a step, with half the step beside it."""
-    step: float
-    status: str
-    estimate: float | None     # of the position error, m
-    step_us: float = math.nan  # median time of a step: one run must do, even on a busy machine
-    reason: str = ""
-
+class Pilot(namedtuple("Pilot", "step status estimate step_us reason", defaults=(math.nan, ""))):
+    """A run at a step, with half the step beside it. `estimate`: of the position error, m; `step_us`: median time of a step, as one run must do,
+    even on a busy machine."""
     valid = property(lambda self: self.status in FINISHED and self.estimate is not None)
 
 
-@dataclass(frozen=True)
-class Next:
-    """What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or given up for a reason."""
-    step: float | None = None
-    chosen: float | None = None
-    reason: str = ""
+# What a setting's pilots ask for: another one at `step`; or nothing, if they have chosen a step or given up for a reason.
+Next = namedtuple("Next", "step chosen reason", defaults=(None, None, ""))
 
 
 def halvings(pilots):

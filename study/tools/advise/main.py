@@ -3,7 +3,6 @@ import json
 import math
 import sys
 import time
-from dataclasses import asdict
 from functools import partial
 
 from analysis.core.errors import StudyError
@@ -16,8 +15,8 @@ from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
 from study.tools.advise.evidence import BEGUN
+from study.tools.advise.probe import catalogue
 from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
-from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
 from study.tools.shelf import open_shelf
 
@@ -78,7 +77,7 @@ def ask(options, folder=None):
     question = Question(options.scene[0], options.error, duration(options.scene[0], options.duration, described),
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
-    inputs = asdict(question) | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
+    inputs = question._asdict() | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
     folder = folder or options.results or DEFAULT / folder_of(scene, inputs, names, digest(ROOT / program_of()))
     writable(folder)
     spent = time.monotonic() - began

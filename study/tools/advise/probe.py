@@ -1,17 +1,48 @@
-# Who is tried: implementations near the fastest by the rule of `mbs describe`, and how long a step of each takes.
+# The settings that advice considers, as options of `mbs simulate`, who serves them, and who is tried: implementations near the fastest by the rule
+# of `mbs describe`; how long a step of each takes.
 import math
+from itertools import product
 
 from analysis.core.outcomes import FINISHED
-from study.core.setting import Setting
+from study.core.setting import LOOSENED, Setting
 from study.tools.advise.choice import LEAST_STEPS
 from study.tools.advise.runner import QUICK
 from study.tools.advise.search import LOST
-from study.tools.advise.settings import serving
 
+PROJECTIONS = {"penalty": ("both", "velocity", "none"), "saddle-point": ("both", "velocity", "none")}
+SCHEMES = ("penalty", "saddle-point", "rattle", "rattle4", "rattle6", "multistep6")
+CHEAP = (("projections", "velocity"), ("tolerance", "one-pass"))
+OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(scheme, (change, *CHEAP)) for scheme, change in (
+    ("saddle-point", ("tangent", "kept")), ("penalty", ("precision", "single")), ("penalty", ("geometric-stiffness", ""))))]
 BEHIND = 3.0  # times the least time that the rule foresees: who is slower is not tried; its times are right to a factor of
               # 1.5, mostly
 DEAR = 100.0  # us a step from which probes are as short as they can be
 LONGEST = 20.0  # s, of the first probe
+
+
+def catalogue():
+    """Scheme × projections × tolerance, a scheme's own first; of what else changes a step, what was the fastest somewhere (README.md)."""
+    found = []
+    for scheme in SCHEMES:
+        for projections, tolerance in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED)):
+            asked = {"projections": projections, "tolerance": tolerance}
+            found.append(Setting(scheme, tuple(one for one in asked.items() if one[1] not in ("both", "auto"))))
+    return [*found, *OTHERS]
+
+
+def fits(setting, scene):
+    """Why a scheme cannot be used for a scene (`mbs describe --json`), or ""."""
+    terms = scene["terms"]
+    if not setting.scheme.startswith(("rattle", "multistep")):
+        return ""
+    if terms["driven_constraints"] or terms["factors"] or scene["driven_points"] or scene["driven_vectors"]:
+        return "not for scenes with drivers"
+    return "not for scenes with dampers" if terms["damping"] else ""
+
+
+def serving(setting, variants):
+    """Names of the `variants` ({name: what `mbs list --json` says}) that serve a setting."""
+    return [name for name, said in variants.items() if setting.needs <= set(said["settings"])]
 
 
 def find_speeds(advice, settings, run):

@@ -69,11 +69,9 @@ class Runner:
             every = max(1, min(int(duration / step / JUDGED), int(duration / step * self.variables / VALUES)))
             words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *["--half-step"] * (checks == HALVED),
                      *(("--judge-every", every) if checks else ())]
-            record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
+            record = self._simulate(kind, setting, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
-        if not setting.changes:
-            self._learn(setting, step, found)
         times, least = found.get("step_us", {}), found.get("least_us") or {}
         row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration, "status": status,
                "reason": reason, "estimate": found.get("position_error_estimate"), "exact": found.get("position_error_max"),
@@ -109,7 +107,7 @@ class Runner:
 
     slowdown = property(lambda self: 1.0 / (1.0 - self.waited))  # how many times longer runs take for that
 
-    def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
+    def _simulate(self, kind, setting, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}
         known, began = len(self.lab.names), time.monotonic()
         words = ("--step", f"{step:g}", "--duration", f"{duration:g}", *words)
@@ -119,17 +117,14 @@ class Runner:
                 self.wall, self.processor = self.wall + record.seconds, self.processor + record.machine.get("cpu_s", 0.0)
             else:  # read from a file
                 self.began -= record.seconds
+        if not setting.changes and record.output.get("tolerance"):
+            self.automatic[setting.scheme, step] = record.output["tolerance"]
         return record
 
     def _tolerance(self, setting, variant, step):
         """(record of a run of one step, if that must tell the automatic tolerance; what that is loosened to, m, or None)"""
         record = None
         if (setting.scheme, step) not in self.automatic:
-            record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
-            self._learn(setting, step, record.output)
+            record = self._simulate("automatic", setting.parent, variant, step, step, 60, setting.parent.words())
         known = self.automatic.get((setting.scheme, step))
         return record, known and setting.loosened * known
-
-    def _learn(self, setting, step, found):
-        if found.get("tolerance"):
-            self.automatic[setting.scheme, step] = found["tolerance"]

@@ -22,6 +22,7 @@ class Found:
     reason: str = ""             # why it has none
     quick_us: float = math.nan   # of a step, in a short run before any pilot
     chosen_us: float = math.nan  # of the chosen step
+    parent: object = None        # the Found of its scheme without changes, where that is another setting
 
     open = property(lambda self: self.chosen is None and not self.reason)
 
@@ -38,25 +39,24 @@ class Found:
 
 
 class Search:
-    """`run(setting, step)` gives a Pilot, `quick(setting, step)` the time of a step in a short run, us; None if no time is left."""
+    """Fills `advice.found`. `run(setting, step)` gives a Pilot, `quick(setting, step)` a short run's time of a step, us; None if no time is left."""
 
-    def __init__(self, settings, run, quick, *, error, duration, start, deadline_us=None, step=None):
-        self.found = {setting: Found(setting) for setting in settings}
-        self.run, self.quick, self.error, self.duration, self.start = run, quick, error, duration, start
-        self.deadline_us = deadline_us or math.inf
-        self.step = step  # where only one may be chosen
-        self.cut = False
+    def __init__(self, advice, settings, run, quick):
+        self.found = advice.found = {setting: Found(setting) for setting in settings}
+        for one in self.found.values():
+            one.parent = self.found.get(one.setting.parent) if one.setting.changes else None
+        self.asked, self.step, self.error, self.duration = advice.question, advice.question.step, advice.pilot_error, advice.pilot_duration
+        self.run, self.quick, self.cut = run, quick, False
 
     def search(self):
-        """Pilots until every setting has a step, or a reason why it has none; {setting: Found}."""
+        """Pilots until every setting has a step, or a reason why it has none."""
         while ready := [one for one in self.found.values() if one.open and self._ready(one)]:
-            self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)))
+            self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._tells(one.parent) else DOUBT)))
         for one in self.found.values():
             if one.open and one.quick_us == math.inf:
                 one.reason = "its steps take far longer than those of other settings"
             elif one.open:
                 one.reason = f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest {self.best() / 1e3:.3g}"
-        return self.found
 
     def best(self):
         """Least time of a simulated second among the settings that have a step, us."""
@@ -66,7 +66,7 @@ class Search:
         """Time of a simulated second that a setting may reach, us; 0 where nothing is known."""
         if one.chosen:
             return one.step_us() / one.chosen
-        parent = self.parent(one)
+        parent = one.parent
         if one.pilots:
             return one.step_us() / self._needed(one)
         if self._tells(parent):
@@ -75,7 +75,7 @@ class Search:
             at = where = self.step
         else:
             best = min((other for other in self.found.values() if other.chosen), key=self.promise, default=None)
-            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.start), self.start
+            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.asked.first_step), self.asked.first_step
         if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
             one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
                             or (parent.step_us() if self._tells(parent) else 0.0))
@@ -86,10 +86,6 @@ class Search:
         position may lose it again at the next step, where a change of it passes."""
         valid = [pilot for pilot in one.pilots if pilot.valid] if one else []
         return bool(valid) and (len(valid) == len(one.pilots) or any(counts(pilot.step, valid, self.error) for pilot in valid))
-
-    def parent(self, one):
-        """The scheme without changes, where that is another setting."""
-        return self.found.get(one.setting.parent) if one.setting.changes else None
 
     def _needed(self, one):
         """The step that a setting's estimates ask for."""
@@ -103,14 +99,13 @@ class Search:
         return finest.step * min(AHEAD, (self.error / max(finest.estimate, 1e-300)) ** (1 / slope))
 
     def _ready(self, one):
-        parent = self.parent(one)
-        if parent and parent.open and self._ready(parent):
+        if one.parent and one.parent.open and self._ready(one.parent):
             return False  # the scheme itself first
-        return not self.promise(one) > (NEAR if self._tells(parent) else SCHEME) * self.best()
+        return not self.promise(one) > (NEAR if self._tells(one.parent) else SCHEME) * self.best()
 
     def _advance(self, one):
-        parent, order = self.parent(one), one.setting.order
-        start = parent.rung() if self._tells(parent) else self.start
+        parent, order = one.parent, one.setting.order
+        start = parent.rung() if self._tells(parent) else self.asked.first_step
         after = (next_at(self.step, one.pilots, self.error, order, self.duration) if self.step else
                  next_step(one.pilots, self.error, order, start, self.duration))
         if after.step is None:
@@ -146,5 +141,5 @@ class Search:
         one.chosen, one.reason = chosen, "" if chosen else reason
         if chosen:
             one.chosen_us = self.quick(one.setting, chosen) or one.step_us()
-            if one.chosen_us > self.deadline_us:
+            if one.chosen_us > (self.asked.deadline_us or math.inf):
                 one.chosen, one.reason = None, f"a step takes {one.chosen_us:.3g} us, beyond the deadline"

@@ -10,9 +10,8 @@ from study.core.setting import Setting, read_settings
 from study.core.studyset import describe, listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
-from study.tools.advise.probe import probe
+from study.tools.advise.probe import catalogue, fits, probe, serving
 from study.tools.advise.runner import EXACT, folder_of, scene_name
-from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
@@ -57,8 +56,7 @@ def validate(options, ask, runner_of, results):
             rows = [{"kind": kind, "n": described["variables"], "error": error, "asked": error in asked}
                     | evidence.origin(run.lab.set.facts["context"]) for error in errors]
             for row in (row for row in rows if row["asked"]):
-                question = Namespace(scene=[scene], error=row["error"], duration=duration, deadline_us=None, only=options.only,
-                                     budget=None, step=None, results=None, wait=options.wait, json=False)
+                question = Namespace(**vars(options) | {"scene": [scene], "error": row["error"], "duration": duration})
                 answer = ask(question, folder=folder / f"error-{row['error']:g}")
                 with locks.only_one_study(options.wait):
                     row |= _compare(row["error"], duration, answer, run, variants, found, speeds)

@@ -30,9 +30,8 @@ def verify(advice, run):
         row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
-        row["refused"] = refused(row, advice, one)
+        row["refused"] = _refused(one, row, advice)
         if row["refused"]:
-            _reconsider(one, row, advice)
             continue
         run.tell("the advised line itself")
         advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
@@ -63,37 +62,30 @@ def _at_least(row, advice):
     return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
-def refused(row, advice, one):
-    """Why a whole run is not as accurate, or not as punctual, as asked; "" if it is both."""
-    if row["status"] not in FINISHED or row["estimate"] is None:
-        return f"{row['status']}: {row['reason']}"
-    if _excess(row, advice, one) > 1:
-        over, exact = f"m over {row['duration']:g} s", row["exact"]
-        return f"estimate {number(row['estimate'])} {over}, and no margin" if exact is None else f"error {number(exact)} {over}"
-    deadline = advice.question.deadline_us
-    late = deadline and row["step_us_p99"] > deadline
-    return f"99th percentile {row['step_us_p99']:.3g} us over {row['duration']:g} s: beyond the deadline" if late else ""
-
-
-def _excess(row, advice, one):
-    """How many times the allowed error that of a run is; what is known exactly needs no margin."""
-    allowed = advice.question.error * row["duration"] / advice.question.duration
-    return (row["exact"] if row["exact"] is not None else expected_error(advice, one, row)[1]) / allowed
-
-
-def _reconsider(one, row, advice):
-    """What follows from a whole run that was not good enough: a shorter step for all candidates of its setting, or one candidate less."""
+def _refused(one, row, advice):
+    """Why a whole run is not as accurate, or not as punctual, as asked, after which there is a shorter step for all candidates of its setting,
+    or one candidate less; "" if it is both."""
+    question, exact, over = advice.question, row["exact"], f"over {row['duration']:g} s"
+    lost = row["status"] not in FINISHED or row["estimate"] is None
+    allowed = question.error * row["duration"] / question.duration
+    excess = 0 if lost else (expected_error(advice, one, row)[1] if exact is None else exact) / allowed  # what is known exactly needs no margin
+    if not lost and excess <= 1 and not (question.deadline_us and row["step_us_p99"] > question.deadline_us):
+        return ""
     for other in advice.candidates:
         if other.slower and other.rows:  # what beat it has become slower itself
             other.slower, other.reason = False, ""
-    question, found = advice.question, advice.found[one.setting]
-    if row["status"] not in FINISHED or row["estimate"] is None:
-        one.reason = f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}"
-        return
-    excess = _excess(row, advice, one)
+    if lost:
+        one.reason = f"{row['status']} when verified {over}: {row['reason']}"
+        return f"{row['status']}: {row['reason']}"
     if excess <= 1:
         one.drop_late(row["step_us_p99"], " when verified")
-        return
+        return f"99th percentile {row['step_us_p99']:.3g} us {over}: beyond the deadline"
+    _shorten(one, row, excess, advice)
+    return f"estimate {number(row['estimate'])} m {over}, and no margin" if exact is None else f"error {number(exact)} m {over}"
+
+
+def _shorten(one, row, excess, advice):
+    question, found = advice.question, advice.found[one.setting]
     failed = sum(other["setting"] == one.setting.name for other in advice.verifications)
     step = one.step * 0.97**failed * excess ** (-1 / one.setting.order)
     if advice.pilot_duration == question.duration and found.rung() < one.step:  # a pilot that was good enough

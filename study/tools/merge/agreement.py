@@ -1,7 +1,7 @@
 # What several sets say of the same question: per scene and layer, who is among the best on each machine, and on all.
 import math
 import re
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy
 import pandas
@@ -23,13 +23,7 @@ ALIKE = ("commit", "compiler", "flags", "build_type", "libraries", "blas", "blas
 SYSTEM = re.compile(r"[\w-]+-linux-gnu")  # in paths: a library of another architecture is the same one
 
 
-@dataclass(frozen=True)
-class Question:
-    part: str
-    scene: str
-    form: str  # of the step
-    layer: str
-    variables: float
+Question = namedtuple("Question", "part scene form layer variables")  # form: of the step
 
 
 def unlike(first, other):
@@ -95,11 +89,8 @@ def _families(studyset):
             yield Question("families", scene, form, "libraries", group.variables.iloc[0]), Ranking(next(iter(ratios)), ratios)
 
 
-@dataclass(frozen=True)
-class Agreement:
+class Agreement(namedtuple("Agreement", "question machines")):
     """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
-    question: Question
-    machines: tuple
 
     @property
     def sets(self):

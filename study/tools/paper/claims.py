@@ -1,7 +1,6 @@
 # What the paper claims, and whether the set says so: the build stops at a claim that does not hold (\holds), and chooses the
 # sentence that fits where the paper has one for each outcome (\either).
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections import namedtuple
 from operator import eq
 
 from scipy.stats import gmean
@@ -17,14 +16,9 @@ from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, ph
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
 
-@dataclass(frozen=True)
-class Claim:
-    name: str
-    text: str         # what is claimed
-    part: str         # whose run tells
-    where: str        # in the paper: its section's label
-    found: Callable   # Known → (whether it holds, None if nothing was measured; what a run should give)
-    merged: bool = False  # study/merge tells, from the sets of several machines
+# text: what is claimed; part: whose run tells; where: its section's label in the paper; found: Known → (whether it holds, None if nothing was
+# measured; what a run should give); merged: study/merge tells, from the sets of several machines.
+Claim = namedtuple("Claim", "name text part where found merged", defaults=(False,))
 
 
 def claims():

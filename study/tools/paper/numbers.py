@@ -1,8 +1,7 @@
 # Every number of the paper by name, each a query on a table of the set, with the records behind it. A query gets Known and gives Number or
 # None: then the paper prints "not measured", as it does for a text that says nothing.
 import math
-from collections import defaultdict
-from dataclasses import dataclass
+from collections import defaultdict, namedtuple
 
 from scipy.stats import gmean
 
@@ -21,11 +20,8 @@ DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # the same factorization,
 SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
 
 
-@dataclass(frozen=True)
-class Number:
-    text: str      # as it is printed
-    table: str     # "part/table", or the file that it comes from
-    records: tuple = ()  # names of records
+# text: as it is printed; table: "part/table", or the file that it comes from; records: names of records
+Number = namedtuple("Number", "text table records", defaults=((),))
 
 
 def numbers(known):

@@ -34,11 +34,9 @@ def view(arguments):
         note = Path(options.trajectory).name
     else:
         with tempfile.TemporaryDirectory() as folder:
-            csv, outputs = Path(folder) / "trajectory.csv", Path(folder) / "outputs.csv"
-            note = program.simulate(options.scene, scene, options, frames, csv, outputs if scene.outputs else None, print)
-            motion = trajectory.read(csv, scene, frames)
-            if scene.outputs:
-                motion.outputs = trajectory.read_outputs(outputs, scene, frames)
+            csv, outputs = Path(folder) / "trajectory.csv", Path(folder) / "outputs.csv" if scene.outputs else None
+            note = program.simulate(options.scene, scene, options, frames, csv, outputs, print)
+            motion = trajectory.read(csv, scene, frames, outputs)
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
     up = [int(axis == options.up) for axis in "xyz"] if options.up else program.upward(options.scene)
@@ -112,4 +110,4 @@ def within(motion, window):
     if len(inside) < 2:
         raise StudyError(f"--window {window[0]:g} {window[1]:g}: the motion has fewer than two frames there; it lasts from "
                          f"{motion.times[0]:g} to {motion.times[-1]:g} s")
-    return trajectory.Motion(motion.times[inside], motion.positions[inside], {})
+    return trajectory.Motion(motion.times[inside], motion.positions[inside], {}, {})

@@ -3,7 +3,7 @@ import json
 import math
 import os
 import re
-from dataclasses import dataclass
+from collections import namedtuple
 from functools import partial
 from pathlib import Path
 
@@ -23,29 +23,11 @@ TRIAL_STEPS = 20
 STEPS_OF_A_RUN = 1e8     # at most: mbs refuses more
 
 
-@dataclass
-class Body:
-    name: str
-    points: list  # indices into Scene.points
-    vectors: list
-
-
-@dataclass
-class Scene:
-    """Points are (name, kind); `start` has their positions at t = 0, one row each, m. Rods and springs are pairs of points, and so is a
-    distance, which is drawn like a rod; torsion springs are pairs of directions, each from a point to a point."""
-    name: str
-    dimension: int
-    points: list
-    start: list
-    rods: list
-    bodies: list
-    springs: list
-    torsion_springs: list
-    outputs: list  # names of what the author asked for
-    facts: str     # on its size, what the program says of it
-    end: float     # s; driven motion is not known beyond
-    scheme: str    # the form of the step that `mbs describe` takes
+Body = namedtuple("Body", "name points vectors")  # points and vectors: indices into Scene.points
+# points: (name, kind); start: their positions at t = 0, one row each, m. Rods and springs are pairs of points, and so is a distance, which is
+# drawn like a rod; torsion springs are pairs of directions, each from a point to a point. outputs: names of what the author asked for; facts: on
+# its size, what the program says of it; end, s: driven motion is not known beyond; scheme: the form of the step that `mbs describe` takes.
+Scene = namedtuple("Scene", "name dimension points start rods bodies springs torsion_springs outputs facts end scheme")
 
 
 def describe(scene):

@@ -1,8 +1,7 @@
 # Reads the CSV of `mbs simulate --trajectory`, however long: only the rows that are shown are kept.
 import os
-from collections import Counter
+from collections import Counter, namedtuple
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 
 import numpy
 
@@ -13,35 +12,28 @@ LONGEST = 2**24  # bytes that are read of a line: a hundred times what the large
 START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another scene's
 
 
-@dataclass
-class Motion:
-    """`positions` is (frames, points, dimension), m; `curves` has the columns of CURVES by name, one value a frame, or is empty if the file
-    lacks them; `outputs` has the scene's own by name, each {column: one value a frame}."""
-    times: numpy.ndarray
-    positions: numpy.ndarray
-    curves: dict
-    outputs: dict = field(default_factory=dict)
+# positions: (frames, points, dimension), m; curves: the columns of CURVES by name, one value a frame, or {} if the file lacks them; outputs: the
+# scene's own by name, each {column: one value a frame}.
+Motion = namedtuple("Motion", "times positions curves outputs")
 
 
-def read(path, scene, frames):
-    """About `frames` rows, equally spaced, and the last. A frame's constraint violation is the largest of all rows since the frame before."""
+def read(path, scene, frames, outputs=None):
+    """The Motion in the CSV of `mbs simulate --trajectory`, and in that of its `--output`, whose rows are at the same times: about `frames` of
+    them, equally spaced, and the last. A frame's constraint violation is the largest of all rows since the frame before."""
     with _opened(path) as (file, columns):
         places, curves = _places(path, columns, scene)
         table, largest = _table(path, file, columns, frames)
     positions = table[:, places].reshape(len(table), len(scene.points), scene.dimension)
-    motion = Motion(table[:, 0], positions, {name: table[:, place] for name, place in zip(CURVES, curves)})
+    motion = Motion(table[:, 0], positions, {name: table[:, place] for name, place in zip(CURVES, curves)}, {})
     if curves:
         motion.curves["constraint_violation"] = largest[:, curves[-1]]
     _same_start(path, motion, scene)
+    if outputs:
+        with _opened(outputs) as (file, columns):
+            table, _ = _table(outputs, file, columns, frames)
+        motion.outputs.update({name: {column: table[:, place] for place, column in enumerate(columns) if name in (
+            column, column.rpartition(".")[0])} for name in scene.outputs})
     return motion
-
-
-def read_outputs(path, scene, frames):
-    """Motion.outputs from the CSV of `mbs simulate --output`, of the run whose trajectory was read: their rows are at the same times."""
-    with _opened(path) as (file, columns):
-        table, _ = _table(path, file, columns, frames)
-    return {name: {column: table[:, place] for place, column in enumerate(columns) if name in (column, column.rpartition(".")[0])}
-            for name in scene.outputs}
 
 
 @contextmanager
