@@ -1,4 +1,4 @@
-# What is simulated, and what its motion is compared with: the N-four-bar and the standard problems of study/scenes.
+# What the columns of accuracy simulate, and what its motion is compared with: the N-four-bar and the standard problems of study/scenes.
 #
 # Every reference has an error of its own; no error of a run is shown below it.
 #   four-bar, closed forms  rounding: by how much the solution moves with an ulp of its argument
@@ -21,6 +21,20 @@ AROUND = (20, 10, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
 JUDGED_S = 1e-2  # the error of a four-bar is evaluated once in as much; at every step that is longer than half of it
 SAMPLES = metric.SAMPLES // 8  # of a problem's motion: so that records stay small
 ULP = 2.0**-52
+# Of the columns as a profile lists them: sizes of the N-four-bar, standard problems, sizes for pairs of settings.
+KEYS = {"loops": {"seconds", "fills"}, "problem": {"seconds"}, "pairs": {"seconds"}}  # beside the kind itself
+PREFIX = {"loops": "four-bar-", "problem": "", "pairs": "pairs-"}
+
+
+def columns(settings):
+    """{column: (kind, entry)}; kind: one of KEYS."""
+    found = {}
+    for entry in settings["columns"]:
+        kind = next((kind for kind, keys in KEYS.items() if isinstance(entry, dict) and set(entry) == {kind} | keys), None)
+        if kind is None:
+            raise StudyError(f"accuracy: columns: {entry} needs seconds and one of loops (with fills), problem, pairs")
+        found[PREFIX[kind] + str(entry[kind]).replace(" ", "-")] = kind, entry
+    return found
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 import pandas
 
 from analysis.accuracy import pairs, subjects
-from analysis.accuracy.columns import columns
 from analysis.accuracy.points import points, runs, timed
 from analysis.accuracy.winners import LAYERS, meeting, of_layer, winners
 from analysis.core.errors import StudyError
@@ -11,7 +10,7 @@ from analysis.core.outcomes import pareto
 
 def build(records, view):
     found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": []}
-    for column, (kind, entry) in columns(view.settings).items():
+    for column, (kind, entry) in subjects.columns(view.settings).items():
         subject = subjects.of(kind, entry, view.settings)
         mine = [record for record in records if record.column == column]
         if not mine:

@@ -77,8 +77,7 @@ def ratio_to(what, paired, name, other, cell):
     """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
     if cell["status"] != "ok" or other is None or name == other:
         return {what: 1.0} if name == other and cell["status"] == "ok" else {}
-    found = timing.ratio(paired, name, other)
-    return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
+    return timing.ratio(paired, name, other).columns(what, f"{what}_")
 
 
 def agreed(cells, names):

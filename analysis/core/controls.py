@@ -20,8 +20,8 @@ def controls(timed):
         for twin in sorted(name for name in paired.logs if name.endswith(TWIN)):
             name = twin.removesuffix(TWIN)
             found = timing.ratio(paired, twin, name)
-            rows.append({"scene": scene, "implementation": name, "ratio": found.value, "low": found.low, "high": found.high,
-                         "decided": found.low > 1 or found.high < 1, "record": " ".join(group[group.implementation == twin].record)})
+            rows.append({"scene": scene, "implementation": name, **found.columns(), "decided": found.low > 1 or found.high < 1,
+                         "record": " ".join(group[group.implementation == twin].record)})
     return pandas.DataFrame(rows)
 
 

@@ -108,8 +108,12 @@ def apart(rows, column="step_us"):
     return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
-# chance: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
-Ratio = namedtuple("Ratio", "value low high chance", defaults=(math.nan,))
+class Ratio(namedtuple("Ratio", "value low high chance", defaults=(math.nan,))):
+    """With its interval. `chance`: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)."""
+    def columns(self, name="ratio", ends=""):
+        return {name: self.value, f"{ends}low": self.low, f"{ends}high": self.high}
+
+
 NONE = Ratio(math.nan, math.nan, math.nan)
 NO_VARIANCE = (0.0, 1)
 

@@ -24,10 +24,8 @@ def _row(rows, cells, name, base):
     lost = next((cells[one] for one in (base, name) if one in cells and cells[one]["status"] != "ok"), None)
     if lost is not None or not {name, base} <= cells.keys():
         return {key: lost[key] for key in ("status", "reason", "record")} if lost else None
-    ratio = timing.ratio(rows, name, base)
-    return {"status": "ok", "reason": "", "processes": cells[name]["processes"], "base_us": cells[base]["step_us"],
-            "step_us": cells[name]["step_us"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
-            "record": cells[name]["record"]}
+    return timing.ratio(rows, name, base).columns() | {
+        "status": "ok", "reason": "", "base_us": cells[base]["step_us"], **{key: cells[name][key] for key in ("processes", "step_us", "record")}}
 
 
 def _unasked(gate, scene, name):
