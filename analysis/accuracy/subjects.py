@@ -98,7 +98,11 @@ def reference(subject, runs=()):
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
     name = subject.entry.known
     if name == EXTRAPOLATED:
-        known, less = _extrapolated(runs)
+        lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
+        if lost or len(runs) < 3:
+            raise StudyError(": ".join(lost) if lost else "its runs were not made")
+        less, known = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
+                       for both in zip(runs, runs[1:]))
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
     else:
         known, word = KNOWN[name](times), kind(name)
@@ -108,16 +112,6 @@ def reference(subject, runs=()):
             less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
     known, less = ({column: one[column] for column in subject.entry.columns(one)} for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
-
-
-def _extrapolated(runs):
-    """({column: values}, the same with one step less)"""
-    lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
-    if lost or len(runs) < 3:
-        raise StudyError(": ".join(lost) if lost else "its runs were not made")
-    coarse, fine = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
-                    for both in zip(runs, runs[1:]))
-    return fine, coarse
 
 
 def error(subject, known, record):

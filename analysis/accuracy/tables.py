@@ -53,10 +53,8 @@ def of_column(kind, subject, known, records, view):
         chosen = meeting(of_layer(table, layer, libraries), float("inf"))
         table[f"front_{layer}"] = table.index.isin([index for _, rows in chosen.groupby("scene") for index in pareto(rows)])
     won = winners(table, measured, view.settings["errors"], libraries)
-    fills = {scene: rows.fill.dropna().median() for scene, rows in table.groupby("scene")}
     for one in (table, won):
         one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]
-    won["fill"] = won.scene.map(fills)
     won["variables"] = table.variables.max()
     won = won.sort_values(["fill_asked", "layer", "required"], ascending=[True, False, False], na_position="first")
     return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}

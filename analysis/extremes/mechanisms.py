@@ -3,9 +3,8 @@ from dataclasses import dataclass
 
 import numpy
 
-from analysis.extremes import scenes
 from analysis.extremes.linkages import Dyad, Linkage, Side
-from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod
+from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod, shifted_rod, twin_rod
 from study.scenes.mechanics import double_pendulum, integrate
 from study.scenes.references import CLOSED, KNOWN
 
@@ -76,13 +75,13 @@ class Uneven(Chain):
     """One loop with a redundant rod whose second crank is given a speed greater by a share. The least change, weighted with
     the masses, makes it the mean of both."""
     share: float = 0.0
-    same_points: bool | None = None  # of the redundant rod, as in scenes.twin_rod; None: a third crank in the middle
+    same_points: bool | None = None  # of the redundant rod, as in twin_rod; None: a third crank in the middle
 
     def solutions(self, times):
         return Chain(1, rate=1 + self.share / 2).solutions(times)
 
     def document(self):
-        document = scenes.shifted_rod(0.5) if self.same_points is None else scenes.twin_rod(self.same_points)
+        document = shifted_rod(0.5) if self.same_points is None else twin_rod(self.same_points)
         [point] = [point for point in document["points"] if point["name"] == "B1"]
         point["velocity"] = [value * (1 + self.share) for value in point["velocity"]]
         return document

@@ -7,7 +7,6 @@ from analysis.core.contest import agreed, by_scene, contests, grouped, ratio_to,
 from analysis.core.controls import controls
 from analysis.core.registry import TWIN
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import power_law
 from analysis.families import defaults
 from analysis.families.rule import judged
 
@@ -73,9 +72,9 @@ def growth(scenes, mechanisms):
         sizes = known.loc[group.scene]
         if sizes.n.nunique() < LEAST:
             continue
-        exponent, low, high = power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
+        exponent, low, high = timing.power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
         yield {"family": family, "scheme": scheme, "implementation": name, "sizes": len(group), "least": sizes.n.min(), "most": sizes.n.max(),
-               "exponent": exponent, "low": low, "high": high, "per_flop": power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
+               "exponent": exponent, "low": low, "high": high, "per_flop": timing.power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
                "record": " ".join(dict.fromkeys(group.record))}
 
 

@@ -4,7 +4,6 @@ import pandas
 from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import median
 from analysis.limit.held import must_hold
 
 LIMIT = "limit/limit"
@@ -63,7 +62,7 @@ def _batches(records):
             sides = pandas.concat([timing.apart(good.assign(implementation=side), f"{side}_us") for side in ("alone", "step")])
             row |= timing.ratio(sides, "alone", "step").columns("gain") | {
                 "status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0], "lanes": good.lanes.iloc[0],
-                "step_us": median(good.step_us), "alone_us": median(good.alone_us), "least": good.gain.min(), "most": good.gain.max()}
+                "step_us": timing.median(good.step_us), "alone_us": timing.median(good.alone_us), "least": good.gain.min(), "most": good.gain.max()}
         yield row
 
 

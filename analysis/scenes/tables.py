@@ -8,7 +8,6 @@ from analysis.core import timing
 from analysis.core.contest import grouped
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
-from analysis.core.statistics import median
 from study.scenes import metric
 from study.scenes.metric import extrapolate, observed_order
 from study.scenes.modelling import CASES
@@ -122,7 +121,7 @@ def modelling_rows(records):
         by_case = timing.apart(rows.assign(implementation=rows.case))  # cases are compared as contenders are elsewhere
         cost = timing.ratio(by_case, case, base) if case != base else timing.Ratio(1.0, 1.0, 1.0)
         row = {"implementation": name, "loops": loops, "case": case, "piece": cases[case].piece, "base": base,
-               "status": status, "reason": reason, "rounds": len(good), "step_us": median(good.step_us),
+               "status": status, "reason": reason, "rounds": len(good), "step_us": timing.median(good.step_us),
                "not_timed": "; ".join(f"{one.status}: {one.reason}" for one in wrong[:1].itertuples()),
                "record": " ".join([record.name, *good.record[:1]])} | {
             key: record.output.get(key) for key in (*FIGURES, "tangent_nonzeros")}

@@ -6,8 +6,7 @@ import pandas
 import pytest
 
 from analysis.core.records import Record
-from analysis.core.statistics import median, power_law
-from analysis.core.timing import counted, rank, ratio
+from analysis.core.timing import counted, median, power_law, rank, ratio
 from analysis.core import controls, timing
 from analysis.core.controls import disturbance, told
 from analysis.map import carry

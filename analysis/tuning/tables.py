@@ -32,8 +32,8 @@ def _unasked(gate, scene, name):
     """Of one that was not timed: what the gate said of it, or how the gate ended. None: it took no part."""
     for record in gate:
         if record.cell["scene"] == scene and name in record.cell["contenders"]:
-            status, reason = record.verdicts.get(name, (record.status, record.reason))
-            agrees = status == "agrees"  # then its own variant did not, or the budget was spent
-            return {"status": "dropped" if agrees else status, "record": record.name,
-                    "reason": "not timed, or not beside the variant itself" if agrees else reason}
+            status, reason = record.verdicts[name]
+            if status == "agrees":  # then its own variant did not, or the budget was spent
+                status, reason = "dropped", "not timed, or not beside the variant itself"
+            return {"status": status, "reason": reason, "record": record.name}
     return None

@@ -98,8 +98,9 @@ def _operations(lab, scene):
 def _add_between(lab, timed):
     """Times the fill half-way in the widest gap between two with other libraries ahead, if the budget has room for one
     more scene like those before."""
-    gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:])
-            if high.fill - low.fill >= 100 * CLOSEST and _other_winner(low, high)]
+    gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:]) if high.fill - low.fill >= 100 * CLOSEST
+            for first, second in [(low.rankings["libraries"], high.rankings["libraries"])]
+            if first and second and second.winner not in first.equivalent and first.winner not in second.equivalent]
     if gaps and lab.left > lab.spent / len(timed):
         _, low, high = max(gaps, key=lambda gap: gap[0])
         scene = Scene(low.scene.variables, round((low.fill + high.fill) / 200, 2))
@@ -107,8 +108,3 @@ def _add_between(lab, timed):
         found.time(lab.settings["processes"])
         found.again(lab.settings["again"])
         timed.insert(timed.index(high), found)
-
-
-def _other_winner(low, high):
-    first, second = low.rankings["libraries"], high.rankings["libraries"]
-    return bool(first and second and second.winner not in first.equivalent and first.winner not in second.equivalent)
