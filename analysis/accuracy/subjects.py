@@ -4,7 +4,7 @@
 #   four-bar, closed forms  rounding: by how much the solution moves with an ulp of its argument
 #   integrated              by how much a hundred times the tolerance of the integration changes it
 #   extrapolated            by how much Richardson's value changes with one step less
-from dataclasses import dataclass, field
+from collections import namedtuple
 
 import numpy
 
@@ -37,16 +37,8 @@ def columns(settings):
     return found
 
 
-@dataclass(frozen=True)
-class Subject:
-    name: str
-    title: str
-    scene: str
-    duration: float
-    steps: tuple           # s, the largest first
-    loops: int | None = None
-    entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
-
+class Subject(namedtuple("Subject", "name title scene duration steps loops entry", defaults=(None, None))):
+    """steps: s, the largest first; loops: of a four-bar; entry: the study.scenes.problems.Problem of another."""
     unit = property(lambda self: "m" if self.loops else "relative")
     base = property(lambda self: self.entry.options if self.entry else ())  # that the problem itself needs
 
@@ -79,12 +71,8 @@ def of(kind, entry, settings):
     return problem(entry["problem"]) if kind == "problem" else chain(entry[kind], settings["duration"])
 
 
-@dataclass(frozen=True)
-class Reference:
-    kind: str           # in words, where it comes from
-    own_error: float
-    origin: str         # of its own error
-    known: dict = None  # {column: values} at the samples of a problem
+# kind: in words, where it comes from; origin: of its own error; known: {column: values} at the samples of a problem.
+Reference = namedtuple("Reference", "kind own_error origin known", defaults=(None,))
 
 
 def reference(subject, runs=()):

@@ -40,8 +40,9 @@ def build(records, view):
     fills = tables["mechanisms"][["scene", "fill"]].dropna()
     first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
     return tables | judged(tables, registry) | {
-        "defaults": defaults.table(first["scenes"], first["winners"]), "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])),
-        "orderings": orderings(about), "controls": pandas.DataFrame(twins)}
+        "defaults": pandas.DataFrame(defaults.table(first["scenes"], first["winners"])),
+        "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])), "orderings": orderings(about),
+        "controls": pandas.DataFrame(twins)}
 
 
 def family_of(scene):

@@ -24,7 +24,8 @@ def build(records, view):
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame([row for claim in LEDGER for row in claim(results)]),
-                    "spread": carry.components(results.timing, with_samples(seeds)), "controls": controls(results.timing[results.timing.process > AFTER])}
+                    "spread": carry.components(results.timing, with_samples(seeds)),
+                    "controls": controls(results.timing[results.timing.process > AFTER])}
 
 
 def tidy(records):
