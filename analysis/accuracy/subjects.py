@@ -8,7 +8,7 @@ from collections import namedtuple
 
 import numpy
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, of_run
 from study.scenes import metric
 from study.scenes.mechanics import TOLERANCE

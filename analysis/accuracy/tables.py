@@ -4,7 +4,7 @@ import pandas
 from analysis.accuracy import pairs, subjects
 from analysis.accuracy.points import points, runs, timed
 from analysis.accuracy.winners import LAYERS, meeting, of_layer, winners
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import pareto
 
 

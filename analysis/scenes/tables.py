@@ -6,7 +6,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import grouped
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from study.scenes import metric
 from study.scenes.metric import extrapolate, observed_order

@@ -1,6 +1,6 @@
 # Error against time: for each subject the curves of all settings, the times of what may be fastest; pairs of settings.
 from analysis.accuracy.subjects import columns as listed
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.accuracy import pairs, work
 
 SETTINGS = {"duration": float,  # s simulated of the N-four-bar

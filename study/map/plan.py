@@ -1,6 +1,6 @@
 # The map: who is fastest at which size and fill of the N-four-bar. A column is a size; a scene a size at a fill.
 # All of it is decided from records, so that a run that was interrupted decides alike.
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.map.timed import leaders
 from study.core.cell import Cell, Contender, by_environment
 from study.core.profile import need_keys

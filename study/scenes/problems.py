@@ -5,7 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED
 
 LIST = Path(__file__).resolve().parent / "problems.yaml"
