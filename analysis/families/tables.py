@@ -31,7 +31,7 @@ def build(records, view):
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
         twinned = [one for one in by_role.get(scheme, []) if any(name.endswith(TWIN) for name in one.cell["contenders"])]
-        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows).to_dict("records")]
+        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows)]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]

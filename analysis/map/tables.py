@@ -25,7 +25,7 @@ def build(records, view):
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame([row for claim in LEDGER for row in claim(results)]),
                     "spread": carry.components(results.timing, with_samples(seeds)),
-                    "controls": controls(results.timing[results.timing.process > AFTER])}
+                    "controls": pandas.DataFrame(controls(results.timing[results.timing.process > AFTER]))}
 
 
 def tidy(records):
