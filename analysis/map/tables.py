@@ -18,12 +18,16 @@ LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse
 QUESTION = ["constraints", "start", "steps", "step", "passes", "penalty", "tolerance", "fill_seed", "record"]
 
 
+def claims(results):
+    return [row for claim in LEDGER for row in claim(results)]
+
+
 def build(records, view):
     found = {name: conform(make(records), of_part("map")[name], f"map/{name}.csv")
              for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
-    return found | {"cells": cells(results), "claims": pandas.DataFrame([row for claim in LEDGER for row in claim(results)]),
+    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)),
                     "spread": carry.components(results.timing, with_samples(seeds)),
                     "controls": pandas.DataFrame(controls(results.timing[results.timing.process > AFTER]))}
 
