@@ -39,8 +39,9 @@ def _name(entry):
 def run(lab, column):
     [entry] = [one for one in lab.settings["columns"] if _name(one) == column]
     natural, *filled = [Scene(entry["variables"], None if fill == NATURAL else fill) for fill in entry["fills"]]
-    if entry == lab.settings["columns"][0]:
-        _unavailable(lab, natural)
+    for one in lab.registry.entries if entry == lab.settings["columns"][0] else ():  # once a record for each that cannot take part at all
+        if not one["available"] and (not lab.set.facts["only"] or one["folder"] in lab.set.facts["only"]):
+            lab.skip(Cell("bench", natural.name, (Contender(one["folder"], one["folder"]),), role="unavailable"), "unavailable", one["reason"])
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])
     timed = [TimedScene(lab, natural, costs, own_fill)]
     for scene in filled:
@@ -56,13 +57,6 @@ def run(lab, column):
     for one in timed:
         one.again(lab.settings["again"])
     _add_between(lab, timed)
-
-
-def _unavailable(lab, scene):
-    """A record for each implementation that cannot take part at all."""
-    for entry in lab.registry.entries:
-        if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
-            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"), "unavailable", entry["reason"])
 
 
 def _seeds(lab, timed):
