@@ -5,8 +5,7 @@ import shlex
 import signal
 import sys
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, read_object
+from analysis.core.files import ROOT, StudyError, read_object
 from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up

@@ -7,7 +7,6 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.outcomes import FINISHED, of_run
-from analysis.core.statistics import median
 from analysis.accuracy import subjects
 
 KEY = ["scene", "implementation", "setting", "step"]
@@ -102,8 +101,9 @@ def _time(rows, row):
         status = {key: lost[key] for key in ("status", "reason")} if row["status"] in (*FINISHED, NOT_JUDGED) else {}
         return status | {"time": numpy.nan, "time_from": ROLES[kind], "record": records}
     seconds = [_seconds(one, row) for one in mine]
-    return {"step_us": median([one["step_us"] for one in mine]), "time": median(seconds), "time_low": min(seconds), "time_high": max(seconds),
-            "time_from": ROLES[kind], "processes": len(mine), "record": records, "variables": mine[0].get("variables", row.get("variables"))}
+    return {"step_us": timing.median([one["step_us"] for one in mine]), "time": timing.median(seconds), "time_low": min(seconds),
+            "time_high": max(seconds), "time_from": ROLES[kind], "processes": len(mine), "record": records,
+            "variables": mine[0].get("variables", row.get("variables"))}
 
 
 def _seconds(process, row):

@@ -1,14 +1,14 @@
-# What is simulated, and what its motion is compared with: the N-four-bar and the standard problems of study/scenes.
+# What the columns of accuracy simulate, and what its motion is compared with: the N-four-bar and the standard problems of study/scenes.
 #
 # Every reference has an error of its own; no error of a run is shown below it.
 #   four-bar, closed forms  rounding: by how much the solution moves with an ulp of its argument
 #   integrated              by how much a hundred times the tolerance of the integration changes it
 #   extrapolated            by how much Richardson's value changes with one step less
-from dataclasses import dataclass, field
+from collections import namedtuple
 
 import numpy
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, of_run
 from study.scenes import metric
 from study.scenes.mechanics import TOLERANCE
@@ -21,18 +21,24 @@ AROUND = (20, 10, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
 JUDGED_S = 1e-2  # the error of a four-bar is evaluated once in as much; at every step that is longer than half of it
 SAMPLES = metric.SAMPLES // 8  # of a problem's motion: so that records stay small
 ULP = 2.0**-52
+# Of the columns as a profile lists them: sizes of the N-four-bar, standard problems, sizes for pairs of settings.
+KEYS = {"loops": {"seconds", "fills"}, "problem": {"seconds"}, "pairs": {"seconds"}}  # beside the kind itself
+PREFIX = {"loops": "four-bar-", "problem": "", "pairs": "pairs-"}
 
 
-@dataclass(frozen=True)
-class Subject:
-    name: str
-    title: str
-    scene: str
-    duration: float
-    steps: tuple           # s, the largest first
-    loops: int | None = None
-    entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
+def columns(settings):
+    """{column: (kind, entry)}; kind: one of KEYS."""
+    found = {}
+    for entry in settings["columns"]:
+        kind = next((kind for kind, keys in KEYS.items() if isinstance(entry, dict) and set(entry) == {kind} | keys), None)
+        if kind is None:
+            raise StudyError(f"accuracy: columns: {entry} needs seconds and one of loops (with fills), problem, pairs")
+        found[PREFIX[kind] + str(entry[kind]).replace(" ", "-")] = kind, entry
+    return found
 
+
+class Subject(namedtuple("Subject", "name title scene duration steps loops entry", defaults=(None, None))):
+    """steps: s, the largest first; loops: of a four-bar; entry: the study.scenes.problems.Problem of another."""
     unit = property(lambda self: "m" if self.loops else "relative")
     base = property(lambda self: self.entry.options if self.entry else ())  # that the problem itself needs
 
@@ -65,12 +71,8 @@ def of(kind, entry, settings):
     return problem(entry["problem"]) if kind == "problem" else chain(entry[kind], settings["duration"])
 
 
-@dataclass(frozen=True)
-class Reference:
-    kind: str           # in words, where it comes from
-    own_error: float
-    origin: str         # of its own error
-    known: dict = None  # {column: values} at the samples of a problem
+# kind: in words, where it comes from; origin: of its own error; known: {column: values} at the samples of a problem.
+Reference = namedtuple("Reference", "kind own_error origin known", defaults=(None,))
 
 
 def reference(subject, runs=()):
@@ -84,7 +86,11 @@ def reference(subject, runs=()):
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
     name = subject.entry.known
     if name == EXTRAPOLATED:
-        known, less = _extrapolated(runs)
+        lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
+        if lost or len(runs) < 3:
+            raise StudyError(": ".join(lost) if lost else "its runs were not made")
+        less, known = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
+                       for both in zip(runs, runs[1:]))
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
     else:
         known, word = KNOWN[name](times), kind(name)
@@ -94,16 +100,6 @@ def reference(subject, runs=()):
             less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
     known, less = ({column: one[column] for column in subject.entry.columns(one)} for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
-
-
-def _extrapolated(runs):
-    """({column: values}, the same with one step less)"""
-    lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
-    if lost or len(runs) < 3:
-        raise StudyError(": ".join(lost) if lost else "its runs were not made")
-    coarse, fine = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
-                    for both in zip(runs, runs[1:]))
-    return fine, coarse
 
 
 def error(subject, known, record):

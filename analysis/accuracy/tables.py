@@ -2,16 +2,15 @@
 import pandas
 
 from analysis.accuracy import pairs, subjects
-from analysis.accuracy.columns import columns
 from analysis.accuracy.points import points, runs, timed
 from analysis.accuracy.winners import LAYERS, meeting, of_layer, winners
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import pareto
 
 
 def build(records, view):
     found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": []}
-    for column, (kind, entry) in columns(view.settings).items():
+    for column, (kind, entry) in subjects.columns(view.settings).items():
         subject = subjects.of(kind, entry, view.settings)
         mine = [record for record in records if record.column == column]
         if not mine:
@@ -54,10 +53,8 @@ def of_column(kind, subject, known, records, view):
         chosen = meeting(of_layer(table, layer, libraries), float("inf"))
         table[f"front_{layer}"] = table.index.isin([index for _, rows in chosen.groupby("scene") for index in pareto(rows)])
     won = winners(table, measured, view.settings["errors"], libraries)
-    fills = {scene: rows.fill.dropna().median() for scene, rows in table.groupby("scene")}
     for one in (table, won):
         one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]
-    won["fill"] = won.scene.map(fills)
     won["variables"] = table.variables.max()
     won = won.sort_values(["fill_asked", "layer", "required"], ascending=[True, False, False], na_position="first")
     return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}

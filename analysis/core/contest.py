@@ -3,7 +3,6 @@ import math
 
 from analysis.core import timing
 from analysis.core.gather import gather
-from analysis.core.statistics import median
 
 
 def grouped(records):
@@ -63,11 +62,11 @@ def _cell(rows, verdict):
         if verdict[0] not in ("agrees", "dropped"):
             row |= {"status": verdict[0], "reason": verdict[1]}
     values = lambda key: [one.get(key) for one in good]
-    step, passes = median(values("step_us")), first["passes"] / first["steps"]
+    step, passes = timing.median(values("step_us")), first["passes"] / first["steps"]
     row |= {"processes": len(good), "step_us": step, "low_us": min(values("step_us")), "high_us": max(values("step_us")),
-            "passes": passes, "pass_us": step / passes, "setup_us": median(values("setup_us")),
-            "memory_bytes": median(values("memory_bytes")), "position_error": first.get("position_error")}
-    shares = {phase: median(values(f"phase_{phase}")) for phase in timing.PHASES}
+            "passes": passes, "pass_us": step / passes, "setup_us": timing.median(values("setup_us")),
+            "memory_bytes": timing.median(values("memory_bytes")), "position_error": first.get("position_error")}
+    shares = {phase: timing.median(values(f"phase_{phase}")) for phase in timing.PHASES}
     if not math.isnan(shares["other"]):
         row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
     return row
@@ -77,8 +76,7 @@ def ratio_to(what, paired, name, other, cell):
     """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
     if cell["status"] != "ok" or other is None or name == other:
         return {what: 1.0} if name == other and cell["status"] == "ok" else {}
-    found = timing.ratio(paired, name, other)
-    return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
+    return timing.ratio(paired, name, other).columns(what, f"{what}_")
 
 
 def agreed(cells, names):

@@ -2,7 +2,6 @@
 # decided is decided falsely. Disturbance: in how many timed processes others ran, how much of its time a host took, frequencies.
 import math
 
-import pandas
 from scipy import special
 
 from analysis.core import timing
@@ -14,15 +13,13 @@ FALSE = 0.01  # a run is no evidence if its share of false decisions would be fo
 def controls(timed):
     """A row for each scene and contender with a twin: {"scene", "implementation", "ratio", "low", "high", "decided", "record"};
     decided: the interval excludes 1."""
-    rows = []
     for scene, group in timed[timed.status == "ok"].groupby("scene"):
         paired = timing.Paired(group)
         for twin in sorted(name for name in paired.logs if name.endswith(TWIN)):
             name = twin.removesuffix(TWIN)
             found = timing.ratio(paired, twin, name)
-            rows.append({"scene": scene, "implementation": name, "ratio": found.value, "low": found.low, "high": found.high,
-                         "decided": found.low > 1 or found.high < 1, "record": " ".join(group[group.implementation == twin].record)})
-    return pandas.DataFrame(rows)
+            yield {"scene": scene, "implementation": name, **found.columns(), "decided": found.low > 1 or found.high < 1,
+                   "record": " ".join(group[group.implementation == twin].record)}
 
 
 def judged(table):

@@ -1,4 +1,5 @@
-# Files that a reader sees whole or not at all, and digests that tell whether they are as they were written.
+# Files that a reader sees whole or not at all, digests that tell whether they are as they were written, and the one kind of error that a user
+# can mend: a single clear line, exit status 2.
 import contextlib
 import hashlib
 import json
@@ -6,10 +7,12 @@ import os
 import threading
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-
 ROOT = Path(__file__).resolve().parent.parent.parent
 RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
+
+
+class StudyError(Exception):
+    """What is wrong, where, and what to do about it, in one line."""
 
 
 def read_bytes(path):

@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-from analysis.core.files import digest, read_bytes, write_text
+from analysis.core.files import StudyError, digest, read_bytes, write_text
 
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
 KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}

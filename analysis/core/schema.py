@@ -6,8 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_object, write, write_json
+from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
 from analysis.core.records import archive_of, need_same_origin, read_part
 
 TYPES = ("text", "number", "flag")

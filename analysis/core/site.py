@@ -2,6 +2,7 @@
 import base64
 import importlib
 import re
+from functools import partial
 from pathlib import Path
 
 import jinja2
@@ -80,16 +81,11 @@ def _frame(folder, part):
 def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number, "name": name, "code": code}
+    environment.filters |= {"number": number, "name": partial(marked, "([/,])", r"\1<wbr>"), "code": partial(marked, "`(.+?)`", r"<code>\1</code>")}
     environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)
 
 
-def code(text):
-    """What texts of this repository have between backticks, as pages show it."""
-    return markupsafe.Markup(re.sub("`(.+?)`", r"<code>\1</code>", str(markupsafe.escape(text))))
-
-
-def name(text):
-    """The name of an implementation or a scene, which a narrow column breaks after / and comma."""
-    return markupsafe.Markup(re.sub("([/,])", r"\1<wbr>", str(markupsafe.escape(text))))
+def marked(what, by, text):
+    """"name": a narrow column breaks it after / and comma; "code": what texts of this repository have between backticks."""
+    return markupsafe.Markup(re.sub(what, by, str(markupsafe.escape(text))))

@@ -1,4 +1,4 @@
-# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast. study/README.md says why.
+# All statistics. Of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast. study/README.md says why.
 #
 # In a process all contenders take turns: the ratio of two is the median over samples of their quotient. In all it is the mean of its logarithm over
 # layouts of the program (LAYOUTS), of each the mean over its processes, with Student's interval over layouts [Kalibera and Jones 2013]: what a new
@@ -108,8 +108,12 @@ def apart(rows, column="step_us"):
     return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
-# chance: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
-Ratio = namedtuple("Ratio", "value low high chance", defaults=(math.nan,))
+class Ratio(namedtuple("Ratio", "value low high chance", defaults=(math.nan,))):
+    """With its interval. `chance`: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)."""
+    def columns(self, name="ratio", ends=""):
+        return {name: self.value, f"{ends}low": self.low, f"{ends}high": self.high}
+
+
 NONE = Ratio(math.nan, math.nan, math.nan)
 NO_VARIANCE = (0.0, 1)
 
@@ -244,3 +248,22 @@ def differing(rows):
 
 def _text(values):
     return "/".join(f"{value:.0f}" for value in sorted(values))
+
+
+def median(values):
+    """Median of finite values; NaN if there is none or one is not finite."""
+    values = numpy.asarray(values, dtype=float)
+    if values.size == 0 or not numpy.isfinite(values).all():
+        return numpy.nan
+    return float(numpy.median(values))
+
+
+def power_law(sizes, times):
+    """(exponent, low, high): slope of log(time) over log(size) by least squares, with Student's interval, whose width also says how far
+    the times are from a power law; NaN for fewer than three sizes."""
+    if len(sizes) < 3:
+        return (numpy.nan,) * 3
+    from scipy.stats import linregress
+    exponent = float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
+    half = special.stdtrit(len(sizes) - 2, (1 + CONFIDENCE) / 2) * linregress(numpy.log(sizes), numpy.log(times)).stderr
+    return exponent, exponent - half, exponent + half

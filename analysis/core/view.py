@@ -5,8 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.errors import StudyError
-from analysis.core.files import read_object
+from analysis.core.files import StudyError, read_object
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 

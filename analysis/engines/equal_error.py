@@ -71,8 +71,7 @@ def native(engines, rounds):
             ratio = timing.ratio(paired, row["key"].replace(NATIVE, ""), row["key"])
             if ratio.value == ratio.value:
                 yield {name: row[name] for name in ("subject", "setting", "over", "value", "record")} | {
-                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"],
-                    "ratio": ratio.value, "low": ratio.low, "high": ratio.high}
+                    "engine": row["name"].removesuffix(NATIVE), "native_time": row["time"]} | ratio.columns()
 
 
 def samples(rounds):
@@ -107,10 +106,9 @@ def _row(subject, engine, limit, best, side, mine, every, paired):
              "engine_time": best.time, "record": best.record, "reason": ""}
     if mine is None:
         return found | {"reason": unreached(every, best.error)}
-    ratio = timing.ratio(paired, best.key, mine.key)
-    return found | {"implementation": mine["name"], "setting": mine.setting, "step": mine.value, "error": mine.error,
-                    "time": mine.time, "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
-                    "record": f"{best.record} {mine.record}"}
+    return found | timing.ratio(paired, best.key, mine.key).columns() | {
+        "implementation": mine["name"], "setting": mine.setting, "step": mine.value, "error": mine.error, "time": mine.time,
+        "record": f"{best.record} {mine.record}"}
 
 
 def unreached(rows, error):

@@ -5,14 +5,12 @@ from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import title
 from analysis.engines.subjects import DURATION_S, subject_of
 
-SETTING_UP = "study/setup --engines"
-
 
 def context(tables, view):
     engines, table = tables["engines"], tables["equal_error"]
     names = list(dict.fromkeys(engines.engine[engines.status != "unavailable"]))
     answers = [one["text"] for one in sentences.answers(tables, view)] if len(table) else []
-    return {"answers": answers, "says": [*sentences.of_engines(engines)], "measured": not table.empty, "setting_up": SETTING_UP,
+    return {"answers": answers, "says": [*sentences.of_engines(engines)], "measured": not table.empty, "setting_up": "study/setup --engines",
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()}, "duration": DURATION_S,
             "engines": {name: title(name) for name in names}, "title": title, "value": sentences.value,
             "subjects": {name: subject_of(name).title for name in dict.fromkeys(engines.subject)},

@@ -7,7 +7,7 @@ import numpy
 import pandas
 
 from analysis.accuracy import points as accuracy
-from analysis.accuracy.columns import columns
+from analysis.accuracy.subjects import columns
 from analysis.accuracy.winners import meeting
 from analysis.core import records, schema, timing
 from analysis.core.contest import by_scene, grouped

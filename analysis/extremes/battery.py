@@ -3,7 +3,7 @@ import shlex
 
 import pandas
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import GOOD, of_run
 from analysis.extremes import cells, judge, trials, verdicts
 

@@ -3,8 +3,7 @@ import math
 import unicodedata
 from dataclasses import dataclass, field
 
-from analysis.extremes import scenes
-from analysis.extremes.motions import Chain, Flat
+from analysis.extremes.motions import Chain, Flat, shifted_rod, sprung_pendulum, twin_rod, unlike_masses
 from study.core.setting import Setting
 
 STEP, STEPS = 1.25e-3, 2000
@@ -102,7 +101,7 @@ def _of_chains():
     for power in range(2, 17, 2):
         yield _chain("penalty", f"α = 1e{power}", Chain(LOOPS), penalty=f"1e{power}")
     for power in (-9, -6, -3, 3, 6, 9):
-        yield _chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
+        yield _chain("mass ratio", f"1e{power}", unlike_masses(LOOPS, 10.0**power))
     long = lambda length: Chain(LOOPS, length=length, rate=length**-0.5)
     for power in range(-6, 7, 2):  # steps in proportion to sqrt(length), as the motion is ...
         yield _chain("length", f"{_short(10.0**power)} m", long(10.0**power), step=STEP * 10.0**(power // 2))
@@ -116,12 +115,12 @@ def _constraints():
     for stiffness in (1e6, 1e8, 1e10, 1e12):
         spring = {"name": "spring", "between": ["B0", "B1"], "stiffness": stiffness, "length": 1.0}  # beside a coupler, at its free length
         yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), Chain(2).document() | {"springs": [spring]})
-        yield Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None, scenes.sprung_pendulum(stiffness), steps=800,
+        yield Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None, sprung_pendulum(stiffness), steps=800,
                       kept=("B.x", "B.y", "C.x", "C.y"))
-    yield Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True))
-    yield Extreme("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False))
+    yield Extreme("redundant", "rod given twice", "", Chain(1), twin_rod(same_points=True))
+    yield Extreme("redundant", "rod doubled", "", Chain(1), twin_rod(same_points=False))
     for shift in (1e-3, 1e-5, 1e-7, 1e-9):
-        yield Extreme("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
+        yield Extreme("redundant", f"third rod at {_short(shift)} m", "", Chain(1), shifted_rod(shift))
 
 
 def _starts():

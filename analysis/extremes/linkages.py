@@ -2,6 +2,7 @@
 #
 # Each point is where two loci meet; `side` says at which of their two meetings. As long as a linkage does not come to the place
 # where both meetings are one, its change point, the side stays what it was. That is the closed form.
+from collections import namedtuple
 from dataclasses import dataclass
 from functools import cache
 
@@ -22,12 +23,8 @@ def _unit(at):
     return at / numpy.sqrt((at * at).sum(axis=0))
 
 
-@dataclass(frozen=True)
-class Side:
+class Side(namedtuple("Side", "sign turn", defaults=(1, None))):
     """+1 or -1; with `turn`, the sign changes wherever sin(crank - turn) does: a passage of change points."""
-    sign: int = 1
-    turn: float | None = None
-
     def at(self, angle):
         return self.sign if self.turn is None else self.sign * numpy.where(numpy.sin(numpy.real(angle) - self.turn) < 0, -1, 1)
 
@@ -42,14 +39,8 @@ class Follower:
         return 1.0
 
 
-@dataclass(frozen=True)
-class Dyad(Follower):
+class Dyad(namedtuple("Dyad", "name ends lengths side", defaults=(Side(),)), Follower):
     """A point at a distance from each of two others, on the left of the way from the first to the second if side is +1."""
-    name: str
-    ends: tuple
-    lengths: tuple
-    side: Side = Side()
-
     joined = property(lambda self: zip(self.ends, self.lengths))
 
     def place(self, at, angle):
@@ -64,15 +55,8 @@ class Dyad(Follower):
         return abs((_across(first) * second).sum(axis=0)) / (self.lengths[0] * self.lengths[1])
 
 
-@dataclass(frozen=True)
-class Slider(Follower):
+class Slider(namedtuple("Slider", "name end length foot side", defaults=(Side(),)), Follower):
     """A point of 1 kg on the line through `foot` along x, at a distance from another; ahead of that if side is +1."""
-    name: str
-    end: str
-    length: float
-    foot: str
-    side: Side = Side()
-
     load = property(lambda self: self.name)
     joined = property(lambda self: [(self.end, self.length)])
     lists = property(lambda self: {"masses": [{"point": self.name, "mass": 1.0}], "constraints": [
@@ -86,14 +70,8 @@ class Slider(Follower):
         return abs(at[self.name][0] - at[self.end][0]) / self.length
 
 
-@dataclass(frozen=True)
-class Swing(Follower):
+class Swing(namedtuple("Swing", "name foot through length"), Follower):
     """The end of a link that turns about `foot`, on whose line another point slides."""
-    name: str
-    foot: str
-    through: str
-    length: float
-
     joined = property(lambda self: [(self.foot, self.length)])
     lists = property(lambda self: {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]})
 
@@ -104,26 +82,16 @@ class Swing(Follower):
         return numpy.hypot(*(at[self.through] - at[self.foot])) / self.length
 
 
-@dataclass(frozen=True)
-class Plate(Follower):
+class Plate(namedtuple("Plate", "name ends along up"), Follower):
     """A point that is fixed to the link between two others, `along` it and `up` from it."""
-    name: str
-    ends: tuple
-    along: float
-    up: float
 
     def place(self, at, angle):
         way = _unit(at[self.ends[1]] - at[self.ends[0]])
         return at[self.ends[0]] + self.along * way + self.up * _across(way)
 
 
-@dataclass(frozen=True)
-class Wheel(Follower):
+class Wheel(namedtuple("Wheel", "name load radius", defaults=(0.3,)), Follower):
     """A point of a wheel that turns about another point, its centre: nothing turns it, so that it keeps its direction."""
-    name: str
-    load: str
-    radius: float = 0.3
-
     lists = property(lambda self: {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2,
                                                "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]})
 

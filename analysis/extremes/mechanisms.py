@@ -1,11 +1,11 @@
 # More mechanisms whose motion is known: with a light part, with speeds that do not agree, and the standard problems.
+from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy
 
-from analysis.extremes import scenes
 from analysis.extremes.linkages import Dyad, Linkage, Side
-from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod
+from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod, shifted_rod, twin_rod
 from study.scenes.mechanics import double_pendulum, integrate
 from study.scenes.references import CLOSED, KNOWN
 
@@ -17,11 +17,8 @@ def _of_rods(motion, *rods):
         fixed("A", 0, 0), *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")], "rods": list(rods)}
 
 
-@dataclass(frozen=True)
-class LightEnd(Motion):
-    """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line."""
-    mass: float                 # kg, of the lower rod
-
+class LightEnd(namedtuple("LightEnd", "mass"), Motion):
+    """A double pendulum of two rods of 1 m, the upper one of 1 kg, the lower one of `mass` kg, released at rest on a line."""
     truth, accuracy = "equations of its own, integrated", 1e-8
     start = 1.0  # rad
 
@@ -34,11 +31,8 @@ class LightEnd(Motion):
         return _of_rods(self, rod("upper", "A", "B"), rod("lower", "B", "C", self.mass))
 
 
-@dataclass(frozen=True)
-class Damped(Motion):
-    """A rod of 1 m and 1 kg that turns about its foot without gravity and is braked in proportion to its rate."""
-    damping: float  # N m s/rad
-
+class Damped(namedtuple("Damped", "damping"), Motion):
+    """A rod of 1 m and 1 kg that turns about its foot without gravity and is braked in proportion to its rate; damping: N m s/rad."""
     start, rate = 0.3, 3.0  # rad, rad/s
 
     def solutions(self, times):
@@ -53,11 +47,8 @@ class Damped(Motion):
                 "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 0.0, "damping": self.damping, "angle": 1.0}]}
 
 
-@dataclass(frozen=True)
-class TwoPendulums(Motion):
+class TwoPendulums(namedtuple("TwoPendulums", "mass"), Motion):
     """Two rods that have nothing to do with each other, of 1 m and 1 kg and of 0.5 m and `mass`, released at rest."""
-    mass: float
-
     shortest = 0.5
 
     def solutions(self, times):
@@ -76,23 +67,21 @@ class Uneven(Chain):
     """One loop with a redundant rod whose second crank is given a speed greater by a share. The least change, weighted with
     the masses, makes it the mean of both."""
     share: float = 0.0
-    same_points: bool | None = None  # of the redundant rod, as in scenes.twin_rod; None: a third crank in the middle
+    same_points: bool | None = None  # of the redundant rod, as in twin_rod; None: a third crank in the middle
 
     def solutions(self, times):
         return Chain(1, rate=1 + self.share / 2).solutions(times)
 
     def document(self):
-        document = scenes.shifted_rod(0.5) if self.same_points is None else scenes.twin_rod(self.same_points)
+        document = shifted_rod(0.5) if self.same_points is None else twin_rod(self.same_points)
         [point] = [point for point in document["points"] if point["name"] == "B1"]
         point["velocity"] = [value * (1 + self.share) for value in point["velocity"]]
         return document
 
 
-@dataclass(frozen=True)
-class TwoDrives(Motion):
-    """A parallelogram whose cranks are both driven, the second one faster and faster: it can obey neither, one, or something between."""
-    share: float  # rad/s^2
-
+class TwoDrives(namedtuple("TwoDrives", "share"), Motion):
+    """A parallelogram whose cranks are both driven, the second one faster and faster: it can obey neither, one, or something between.
+    share: rad/s^2."""
     shortest = 0.5
     linkage = Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),))
 
@@ -106,11 +95,8 @@ class TwoDrives(Motion):
             "name": "second drive", "type": "angle", "first": ["A", "Ax"], "second": ["D", "C"], "value": {"polynomial": [self.linkage.start, 1.0, self.share]}}]}
 
 
-@dataclass(frozen=True)
-class Standard(Motion):
+class Standard(namedtuple("Standard", "known"), Motion):
     """A standard problem with a reference that `mbs` has no part in: of study/scenes/references.py."""
-    known: str
-
     truth = property(lambda self: "closed form" if self.known in CLOSED else "equations of its own, integrated")
     accuracy = property(lambda self: 0.0 if self.known in CLOSED else 1e-8)
 

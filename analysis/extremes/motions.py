@@ -1,4 +1,4 @@
-# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it; points and rods of scenes.
+# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it; scenes that are more: springs, redundant rods.
 #
 # All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod
 # of mass m turns about its foot: m length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with
@@ -91,3 +91,38 @@ class Flat(Chain):
         [swing] = lone.solutions(times)
         still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times), "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]
+
+
+def unlike_masses(loops, ratio):
+    """Every second rod and every second coupler has `ratio` kg, the others 1 kg."""
+    masses = tuple(ratio if i % 2 else 1.0 for i in range(loops + 1))
+    return Chain(loops, rods=masses, couplers=masses[:-1])
+
+
+def sprung_pendulum(stiffness):
+    """A mass at the end of a rod, another on a spring behind it, released on a horizontal line: nothing pulls
+    then, so that a stiff spring starts without vibration."""
+    return {"points": [fixed("A", 0, 0), {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]}],
+            "gravity": [0.0, -GRAVITY],
+            "rods": [rod("rod", "A", "B", mass=0)],
+            "masses": [{"point": "B", "mass": 1.0}, {"point": "C", "mass": 1.0}],
+            "springs": [{"name": "spring", "between": ["B", "C"], "stiffness": stiffness, "length": 1.0}]}
+
+
+def twin_rod(same_points):
+    """One loop whose first rod is there twice; the second has a foot of its own at the same place, or not."""
+    document = Chain(1).document()
+    document["points"] += [] if same_points else [fixed("A", 0, 0)]
+    document["rods"].append(rod("twin", "A0" if same_points else "A", "B0", mass=0))
+    return document
+
+
+def shifted_rod(shift):
+    """One loop with a third rod, massless, `shift` m beside the first: nearly redundant."""
+    document = Chain(1).document()
+    document["rods"] = [rod for rod in document["rods"] if rod["name"] != "coupler0"]
+    document["bodies"] = [{"name": "coupler0", "mass": 1.0, "centre": [0.5, 0], "inertia": 1 / 12,
+                           "points": {"B0": [0, 0], "C": [shift, 0], "B1": [1, 0]}}]
+    document["points"].append(fixed("A", shift, 0))
+    document["rods"].append(rod("third", "A", "C", mass=0))
+    return document

@@ -30,10 +30,7 @@ def _pivots(records):
 
 def _over_processes(rows):
     for _, own in rows.groupby(["sequence", "form"], sort=False) if len(rows) else []:
-        timed = own.assign(environment="own", status="ok", samples=[(time,) for time in own.time_us_median],
-                           implementation=list(zip(own.strategy, own.pivoting)))
+        timed = timing.apart(own.assign(status="ok", implementation=list(zip(own.strategy, own.pivoting))), "time_us_median")
         for (strategy, pivoting), each in own.groupby(["strategy", "pivoting"], sort=False):
-            found = timing.ratio(timed, (strategy, pivoting), PLAIN)
-            yield each.iloc[0][[*SAME]].to_dict() | {
-                "error_worst": each.error_worst.max(skipna=False), "time_us": each.time_us_median.median(), "processes": len(each),
-                "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}
+            yield each.iloc[0][[*SAME]].to_dict() | timing.ratio(timed, (strategy, pivoting), PLAIN).columns("time_ratio", "ratio_") | {
+                "error_worst": each.error_worst.max(skipna=False), "time_us": each.time_us_median.median(), "processes": len(each)}

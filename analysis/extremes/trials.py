@@ -100,7 +100,7 @@ FAR = {"double crank": four_bar(1.2, 1.1, 1.0, 0.4), "crank-rocker": four_bar(0.
 
 @cache
 def all_trials():
-    return [*_standard(), *_near(), *_passing(), *_worked(), *_light(), *_redundant(), *_long()]
+    return [*_standard(), *_near(), *_passing(), *_worked(), *_uneven(), *_long()]
 
 
 def few(trials, standard, others):
@@ -158,14 +158,12 @@ def _worked():
             yield _trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR)
 
 
-def _light():
+def _uneven():
+    """Parts of which one is far lighter, drives of which one is a little faster."""
     for mass in MASSES:
         for step in STEPS[:2]:
             yield _trial("light part", f"lower rod of {mass:g} kg", LightEnd(mass), step, 8.0, FREE, near=mass)
             yield _trial("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), step, 8.0, FREE, near=mass)
-
-
-def _redundant():
     for share in UNEVEN:
         yield _trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share)
         yield _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share)

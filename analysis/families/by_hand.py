@@ -3,7 +3,6 @@
 from itertools import permutations
 
 import numpy
-import pandas
 
 from analysis.core.gather import gather
 
@@ -14,7 +13,6 @@ EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 def table(data, worth, unknown):
     """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the cost of who has none."""
-    rows = []
     for scheme, losses in data.losses.items():
         chosen = {}
         for family, left in gather((data.family[scene], scene) for scene in losses.index).items():
@@ -24,11 +22,11 @@ def table(data, worth, unknown):
             scenes = _inside(where, data.features.loc[losses.index])
             found = numpy.array([losses.loc[scene, chosen[scene]] for scene in scenes])
             known = found[~numpy.isnan(found)]
-            rows.append({"scheme": scheme, "library": name} | {f"{end}_{number}": value if numpy.isfinite(value) else None
-                                                               for number, ends in where.items() for end, value in zip(("least", "below"), ends)}
-                        | {"scenes": len(found), "unknown": len(found) - len(known), "mean_loss": known.mean() if len(known) else None,
-                           "worst_loss": known.max() if len(known) else None, "record": " ".join(data.record[scene] for scene in scenes)})
-    return pandas.DataFrame(rows)
+            limits = {f"{end}_{number}": value if numpy.isfinite(value) else None
+                      for number, ends in where.items() for end, value in zip(("least", "below"), ends)}
+            yield {"scheme": scheme, "library": name} | limits | {
+                "scenes": len(found), "unknown": len(found) - len(known), "mean_loss": known.mean() if len(known) else None,
+                "worst_loss": known.max() if len(known) else None, "record": " ".join(data.record[scene] for scene in scenes)}
 
 
 def summary(cases):

@@ -3,7 +3,6 @@
 from collections import Counter, namedtuple
 
 import numpy
-import pandas
 
 DENSE, KLU, UMFPACK = "armadillo_dense/potrf", "csc_klu/refactor", "csc_umfpack/symmetric"
 MUMPS, CHOLMOD, SUPERNODAL = "csc_mumps/spd", "csc_cholmod/simplicial", "csc_cholmod/supernodal"
@@ -41,7 +40,7 @@ def table(scenes, winners, rules=RULES):
     """A row a rule, from the rows of scenes and winners: time of what it chooses over that of the fastest library, on all
     mechanisms that have both. Who was only looked at has a rough time, and the row says on how many."""
     rows = {(row["scene"], row["implementation"]): row for row in scenes}
-    known, found = [row for row in winners if row["layer"] == "libraries" and row.get("winner")], []
+    known = [row for row in winners if row["layer"] == "libraries" and row.get("winner")]
     for rule in rules:
         chosen, losses, rough, records = Counter(), {}, 0, {}
         for winner in known:
@@ -57,8 +56,7 @@ def table(scenes, winners, rules=RULES):
                 rough += 1
             records[scene] = row.get("record", "")
         where = max(losses, key=losses.get, default="")
-        found.append({
+        yield {
             "rule": rule.name, "source": rule.source, "chooses": rule.chooses, "scenes": len(known), "timed": len(losses), "rough": rough,
             "chosen": ", ".join(f"{name} on {count}" for name, count in chosen.most_common()), "worst": losses.get(where), "where": where,
-            "mean": float(numpy.exp(numpy.mean(numpy.log(list(losses.values()))))) if losses else None, "record": records.get(where, "")})
-    return pandas.DataFrame(found)
+            "mean": float(numpy.exp(numpy.mean(numpy.log(list(losses.values()))))) if losses else None, "record": records.get(where, "")}

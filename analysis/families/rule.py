@@ -38,8 +38,9 @@ def judged(tables, registry):
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
                               columns=["family", "scheme", "implementation", "ratio"])
-    rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
-    return {name: pandas.DataFrame(found) for name, found in rows.items()} | {"by_hand": by_hand.table(data, WORTH, UNKNOWN)}
+    rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
+            "by_hand": by_hand.table(data, WORTH, UNKNOWN)}
+    return {name: pandas.DataFrame(found) for name, found in rows.items()}
 
 
 def summary(held):

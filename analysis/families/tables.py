@@ -7,7 +7,6 @@ from analysis.core.contest import agreed, by_scene, contests, grouped, ratio_to,
 from analysis.core.controls import controls
 from analysis.core.registry import TWIN
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import power_law
 from analysis.families import defaults
 from analysis.families.rule import judged
 
@@ -32,7 +31,7 @@ def build(records, view):
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
         twinned = [one for one in by_role.get(scheme, []) if any(name.endswith(TWIN) for name in one.cell["contenders"])]
-        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows).to_dict("records")]
+        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows)]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]
@@ -41,8 +40,9 @@ def build(records, view):
     fills = tables["mechanisms"][["scene", "fill"]].dropna()
     first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
     return tables | judged(tables, registry) | {
-        "defaults": defaults.table(first["scenes"], first["winners"]), "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])),
-        "orderings": orderings(about), "controls": pandas.DataFrame(twins)}
+        "defaults": pandas.DataFrame(defaults.table(first["scenes"], first["winners"])),
+        "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])), "orderings": orderings(about),
+        "controls": pandas.DataFrame(twins)}
 
 
 def family_of(scene):
@@ -73,9 +73,9 @@ def growth(scenes, mechanisms):
         sizes = known.loc[group.scene]
         if sizes.n.nunique() < LEAST:
             continue
-        exponent, low, high = power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
+        exponent, low, high = timing.power_law(sizes.n.to_numpy(), group.step_us.to_numpy())
         yield {"family": family, "scheme": scheme, "implementation": name, "sizes": len(group), "least": sizes.n.min(), "most": sizes.n.max(),
-               "exponent": exponent, "low": low, "high": high, "per_flop": power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
+               "exponent": exponent, "low": low, "high": high, "per_flop": timing.power_law(sizes.flops.to_numpy(), group.step_us.to_numpy())[0],
                "record": " ".join(dict.fromkeys(group.record))}
 
 

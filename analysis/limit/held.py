@@ -4,7 +4,7 @@
 # says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value. Where not all cases were measured nothing is held as a whole.
 import numpy
 
-from analysis.core.statistics import power_law
+from analysis.core.timing import power_law
 
 AHEAD_SIZES, NEAR_SIZES = (22, 50, 82, 160, 1000, 4000), (22, 82, 1000)  # n
 AHEAD, AHEAD_PLANAR, AHEAD_SPATIAL = 3.0, 2.0, 1.5

@@ -4,7 +4,6 @@ import pandas
 from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import median
 from analysis.limit.held import must_hold
 
 LIMIT = "limit/limit"
@@ -15,7 +14,6 @@ FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar
 
 def build(records, view):
     registry, by_role = view.registry, grouped(records)
-    order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
@@ -23,7 +21,7 @@ def build(records, view):
              "sweeps": [*_sweeps(by_role.get("sweep", []))]}
     for role in (*FORMS, *KINDS):
         for scene, timed, cells, _ in contests(by_role, role):
-            names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
+            names = [name for name in (LIMIT, *registry.variants) if name in cells]  # without anchors of other pairs
             if role in FORMS:
                 loops = int(scene.partition(":")[2])
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
@@ -50,8 +48,7 @@ def _leads(timed, cells, registry):
         elif rival is None:
             yield row | {"status": "dropped", "reason": "no library was timed that the gate agrees with"}
         else:
-            found = timing.ratio(timed, rival, name)
-            yield row | {"lead": found.value, "low": found.low, "high": found.high}
+            yield row | timing.ratio(timed, rival, name).columns("lead")
 
 
 def _batches(records):
@@ -62,12 +59,10 @@ def _batches(records):
         first = lost.iloc[0] if len(lost) else group.iloc[0]
         row = {"scene": scene, "sets": sets, "implementation": name} | first[["status", "reason", "record"]].to_dict()
         if len(good) and lost.empty:
-            sides = pandas.concat([good.assign(implementation=side, samples=[(time,) for time in good[f"{side}_us"]])
-                                   for side in ("alone", "step")])
-            gain = timing.ratio(sides, "alone", "step")
-            row |= {"status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0],
-                    "lanes": good.lanes.iloc[0], "step_us": median(good.step_us), "alone_us": median(good.alone_us),
-                    "gain": gain.value, "low": gain.low, "high": gain.high, "least": good.gain.min(), "most": good.gain.max()}
+            sides = pandas.concat([timing.apart(good.assign(implementation=side), f"{side}_us") for side in ("alone", "step")])
+            row |= timing.ratio(sides, "alone", "step").columns("gain") | {
+                "status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0], "lanes": good.lanes.iloc[0],
+                "step_us": timing.median(good.step_us), "alone_us": timing.median(good.alone_us), "least": good.gain.min(), "most": good.gain.max()}
         yield row
 
 
@@ -76,7 +71,7 @@ def _batch(record):
     for name in cell["contenders"]:
         found = record.output.get("rows", {}).get(f"{name}/{cell['scene']}/batch")
         status, reason = timing.outcome(record, found)
-        yield {"scene": cell["scene"], "sets": int(record.option("--sets")), "implementation": name, "environment": "",
+        yield {"scene": cell["scene"], "sets": int(record.option("--sets")), "implementation": name,
                "process": cell["number"], "status": status, "reason": reason, "record": record.name} | {
                key: found[key] for key in ("variables", "lanes", "step_us", "alone_us", "gain") if status == "ok"}
 

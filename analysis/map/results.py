@@ -3,7 +3,7 @@ from collections import namedtuple
 from functools import cache
 
 from analysis.core.registry import NULL, TWIN
-from analysis.core.timing import NO_VARIANCE
+from analysis.core.timing import NO_VARIANCE, NONE
 from analysis.map import carry, timed
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
@@ -81,14 +81,10 @@ class Results:
         return found.winner if found else None
 
     @cache
-    def ratio(self, scene, slow, fast):
-        """Time of `slow` over that of `fast`; None if they cannot be compared."""
-        found = self.paired(scene).ratio(slow, fast)
-        return None if found.value != found.value else found
-
     def versus(self, scene, slow, fast):
-        found = None if None in (slow, fast) or slow == fast else self.ratio(scene, slow, fast)
-        if found is None:
+        """The Versus of two; None if they cannot be compared."""
+        found = NONE if None in (slow, fast) or slow == fast else self.paired(scene).ratio(slow, fast)
+        if found.value != found.value:
             return None
         rows = self.rows(scene)
         record = next(iter(rows[(rows.implementation == slow) & (rows.status == "ok")].record), "")

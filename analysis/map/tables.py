@@ -5,7 +5,6 @@ from analysis.core import timing
 from analysis.core.controls import controls
 from analysis.core.registry import NULL
 from analysis.core.schema import conform, of_part
-from analysis.core.statistics import median
 from analysis.map import carry
 from analysis.map.cells import table as cells
 from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
@@ -28,8 +27,9 @@ def build(records, view):
              for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
-    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "spread": carry.components(results.timing, with_samples(seeds)),
-                    "controls": controls(results.timing[results.timing.process > AFTER])}
+    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)),
+                    "spread": carry.components(results.timing, with_samples(seeds)),
+                    "controls": pandas.DataFrame(controls(results.timing[results.timing.process > AFTER]))}
 
 
 def tidy(records):
@@ -89,7 +89,7 @@ def _operations(records):
             contender = next((one for one in cell["contenders"] if name.startswith(f"{one.partition('+')[0]}/")), "")
             status, reason = timing.outcome(one, row)
             yield base | {"implementation": contender, "operation": name.rsplit("/", 1)[-1], "status": status, "reason": reason} | (
-                {"samples": tuple(row["cpu_us"]), "operation_us": median(row["cpu_us"])} if status == "ok" else {})
+                {"samples": tuple(row["cpu_us"]), "operation_us": timing.median(row["cpu_us"])} if status == "ok" else {})
 
 
 def scenes(records):

@@ -67,26 +67,22 @@ def _largest(tried):
         good = None if made.empty else int(every.index[every].max()) if every.any() else 0
         above = [int(loops) for loops in every.index[~every] if loops > good]
         row = dict(zip(("scheme", "step", "implementation"), key)) | {
-            "largest": good, "complete": len(made) == len(runs),
+            "largest": good, "complete": len(made) == len(runs), "record": " ".join((made[made.loops == good] if good else made).record),
             "next_reason": runs[runs.status == "dropped"].reason.iloc[0] if len(made) < len(runs) else END}
-        row |= _observed(made[made.loops == good], "")
-        if not good:
-            row["record"] = " ".join(made.record)  # none of these kept the deadline
+        if good:
+            last = made[made.loops == good].iloc[-1]
+            row |= _observed(made[made.loops == good], "") | {"status": last.status, "reason": last.reason}
         if above:
-            row |= {"next": min(above)} | _observed(made[made.loops == min(above)], "next_")
+            beyond = made[made.loops == min(above)]
+            worst = beyond[~beyond.kept.astype(bool)].iloc[0]
+            row |= _observed(beyond, "next_") | {"next": min(above), "next_status": worst.status, "next_reason": worst.reason_not}
         yield row
 
 
 def _observed(runs, prefix):
     """Counts of each run of a size, "1300 and 1300", and the longest step of all."""
-    if runs.empty:
-        return {"record": ""} if not prefix else {}
-    found = {f"{prefix}{name}": " and ".join(number(value, 6) for value in runs[name]) for name in ("steps", "missed", "null_missed")} | {
+    return {f"{prefix}{name}": " and ".join(number(value, 6) for value in runs[name]) for name in ("steps", "missed", "null_missed")} | {
         f"{prefix}max_us": runs.max_us.max()}
-    if prefix:
-        worst = runs[~runs.kept.astype(bool)].iloc[0]
-        return found | {"next_status": worst.status, "next_reason": worst.reason_not}
-    return found | {"status": runs.status.iloc[-1], "reason": runs.reason.iloc[-1], "record": " ".join(runs.record)}
 
 
 def missed(record):

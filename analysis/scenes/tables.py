@@ -6,9 +6,8 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import grouped
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
-from analysis.core.statistics import median
 from study.scenes import metric
 from study.scenes.metric import extrapolate, observed_order
 from study.scenes.modelling import CASES
@@ -109,25 +108,24 @@ def modelling_rows(records):
     case that it is compared with, round by round."""
     by_role = grouped(records)
     loops_of = lambda scene: int(scene.rpartition("/")[2].partition("-")[0])  # which study/scenes/modelling.py wrote
-    motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case.name): record
+    motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
     timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name) for case in CASES])
     timed["loops"] = [loops_of(scene) for scene in timed.scene]
-    cases = {case.name: case for case in CASES}
     for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):
         status, reason = of_run(record)
         rows = timed[(timed.implementation == name) & (timed.loops == loops)]
-        mine, base = rows[rows.case == case], cases[case].base
+        mine = rows[rows.case == case.name]
         good, wrong = mine[mine.status == "ok"], mine[mine.status != "ok"]
         by_case = timing.apart(rows.assign(implementation=rows.case))  # cases are compared as contenders are elsewhere
-        cost = timing.ratio(by_case, case, base) if case != base else timing.Ratio(1.0, 1.0, 1.0)
-        row = {"implementation": name, "loops": loops, "case": case, "piece": cases[case].piece, "base": base,
-               "status": status, "reason": reason, "rounds": len(good), "step_us": median(good.step_us),
+        cost = timing.ratio(by_case, case.name, case.base) if case.name != case.base else timing.Ratio(1.0, 1.0, 1.0)
+        row = {"implementation": name, "loops": loops, "case": case.name, "piece": case.piece, "base": case.base,
+               "status": status, "reason": reason, "rounds": len(good), "step_us": timing.median(good.step_us),
                "not_timed": "; ".join(f"{one.status}: {one.reason}" for one in wrong[:1].itertuples()),
                "record": " ".join([record.name, *good.record[:1]])} | {
             key: record.output.get(key) for key in (*FIGURES, "tangent_nonzeros")}
         if len(good):
-            row |= {"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high}
+            row |= cost.columns("ratio", "ratio_")
         if status in GOOD:
             exact = four_bar(_values(record, "t"), loops)
             row["position_error"] = max(abs(_values(record, column) - exact[column]).max() for column in ("B0.x", "B0.y"))

@@ -6,8 +6,7 @@ import pandas
 import pytest
 
 from analysis.core import site
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part

@@ -2,7 +2,7 @@
 import numpy
 import pytest
 
-from analysis.extremes import scenes
+from analysis.extremes import motions
 from analysis.extremes.motions import Chain
 
 STEP, PENALTY = 1.25e-3, 1e9
@@ -63,7 +63,7 @@ def uniform(matrix):
 @pytest.mark.parametrize("ratio", [1.0, 1e3, 1e6, 1e9])
 def test_scaling_of_unknowns_changes_no_bit_but_by_the_choice_of_pivots(ratio):
     random = numpy.random.default_rng(1)
-    matrix = tangent(scenes.unlike_masses(10, ratio), 1.0, STEP, PENALTY)
+    matrix = tangent(motions.unlike_masses(10, ratio), 1.0, STEP, PENALTY)
     right = random.standard_normal(len(matrix))
     d = 2.0**random.integers(-20, 21, len(matrix))
     scaled = d[:, None] * matrix * d

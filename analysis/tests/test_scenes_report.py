@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part

@@ -6,8 +6,7 @@ import pandas
 import pytest
 
 from analysis.core.records import Record
-from analysis.core.statistics import median, power_law
-from analysis.core.timing import counted, rank, ratio
+from analysis.core.timing import counted, median, power_law, rank, ratio
 from analysis.core import controls, timing
 from analysis.core.controls import disturbance, told
 from analysis.map import carry
@@ -138,7 +137,7 @@ def test_controls_count_what_is_decided_though_nothing_differs():
             rows("a", {AFTER + n: (1.0,) for n in range(1, 9)}) +
             rows("a+twin", {AFTER + n: (shift * math.exp(0.01 * random.standard_normal()),) for n in range(1, 9)})
         ).assign(scene=f"four-bar:{scene}", record="r") for scene in range(1, scenes + 1)])
-    sound, unsound = (controls.judged(controls.controls(table(shift, 40))) for shift in (1.0, 1.02))
+    sound, unsound = (controls.judged(pandas.DataFrame(controls.controls(table(shift, 40)))) for shift in (1.0, 1.02))
     assert sound["pairs"] == 40 and sound["false"] <= 6 and sound["sound"]
     assert unsound["false"] > 30 and not unsound["sound"] and unsound["widest"] > 1.01
 

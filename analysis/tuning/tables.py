@@ -24,18 +24,16 @@ def _row(rows, cells, name, base):
     lost = next((cells[one] for one in (base, name) if one in cells and cells[one]["status"] != "ok"), None)
     if lost is not None or not {name, base} <= cells.keys():
         return {key: lost[key] for key in ("status", "reason", "record")} if lost else None
-    ratio = timing.ratio(rows, name, base)
-    return {"status": "ok", "reason": "", "processes": cells[name]["processes"], "base_us": cells[base]["step_us"],
-            "step_us": cells[name]["step_us"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
-            "record": cells[name]["record"]}
+    return timing.ratio(rows, name, base).columns() | {
+        "status": "ok", "reason": "", "base_us": cells[base]["step_us"], **{key: cells[name][key] for key in ("processes", "step_us", "record")}}
 
 
 def _unasked(gate, scene, name):
     """Of one that was not timed: what the gate said of it, or how the gate ended. None: it took no part."""
     for record in gate:
         if record.cell["scene"] == scene and name in record.cell["contenders"]:
-            status, reason = record.verdicts.get(name, (record.status, record.reason))
-            agrees = status == "agrees"  # then its own variant did not, or the budget was spent
-            return {"status": "dropped" if agrees else status, "record": record.name,
-                    "reason": "not timed, or not beside the variant itself" if agrees else reason}
+            status, reason = record.verdicts[name]
+            if status == "agrees":  # then its own variant did not, or the budget was spent
+                status, reason = "dropped", "not timed, or not beside the variant itself"
+            return {"status": status, "reason": reason, "record": record.name}
     return None

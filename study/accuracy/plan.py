@@ -1,6 +1,7 @@
 # Error against time: for each subject the curves of all settings, the times of what may be fastest; pairs of settings.
-from analysis.accuracy.columns import columns as listed
-from analysis.core.errors import StudyError
+from analysis.accuracy.subjects import columns as listed
+from analysis.core.files import StudyError
+from study.accuracy import pairs, work
 
 SETTINGS = {"duration": float,  # s simulated of the N-four-bar
             "longest": float,   # s of a run: one that is predicted to take longer is not made
@@ -18,7 +19,6 @@ def columns(settings):
 
 
 def run(lab, column):
-    from study.accuracy import pairs, work  # these need modules that set-up may have installed
     kind, entry = listed(lab.settings)[column]
     if kind == "pairs":
         pairs.run(lab, entry)

@@ -3,7 +3,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from analysis.accuracy import points, subjects
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.registry import ANCHOR
 from study.core import timing
 from study.core.cell import Cell

@@ -12,8 +12,7 @@ import threading
 import time
 from collections import namedtuple
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, StudyError
 
 MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error", re.I)
 GRACE = 1.0  # s between being asked to end and being made to

@@ -5,8 +5,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json
+from analysis.core.files import ROOT, StudyError, write_json
 from study.core import locks, studyset as sets
 from study.core.front import duration, follow, snakemake
 from study.core.node import forget, home, own_sets, refusals

@@ -7,7 +7,7 @@ import re
 import tempfile
 from pathlib import Path
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.gather import gather
 from study.core import child, machine
 from study.core.cell import LAYOUT

@@ -7,8 +7,7 @@ import subprocess
 import sys
 import time
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, read_json, write_json
+from analysis.core.files import ROOT, StudyError, read_json, write_json
 from study.core import child
 from study.core.job import FRONT
 from study.core.profile import planned

@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.core import child, locks, node
 from study.core.lab import Lab, cores
 from study.core.profile import plan_of

@@ -10,8 +10,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 
 from analysis.core import records
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json
+from analysis.core.files import ROOT, StudyError, write_json
 from study.core import executor, locks
 
 ROOM = 2**20  # bytes: where less is free, a failure is none of the program

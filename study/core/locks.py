@@ -6,7 +6,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.core import machine
 
 POLL = 0.5  # s

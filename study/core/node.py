@@ -6,8 +6,7 @@ import socket
 import tempfile
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_object, write_json, write_text
+from analysis.core.files import ROOT, StudyError, digest, read_object, write_json, write_text
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
 from study.core.cell import LAYOUT, Cell, control, twin_of

@@ -3,7 +3,7 @@ import argparse
 import math
 from pathlib import Path
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 
 
 class Parser(argparse.ArgumentParser):

@@ -4,8 +4,7 @@ from collections import namedtuple
 
 import yaml
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, read_bytes
+from analysis.core.files import ROOT, StudyError, read_bytes
 from analysis.core.parts import parts
 
 FOLDER = ROOT / "study" / "profiles"

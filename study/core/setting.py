@@ -3,8 +3,7 @@ from dataclasses import dataclass, field
 
 import yaml
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, StudyError
 
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order

@@ -6,8 +6,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from analysis.core import records
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_object, write_json, write_text
+from analysis.core.files import ROOT, StudyError, digest, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.schema import need_unchanged

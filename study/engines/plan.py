@@ -8,8 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, StudyError
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of

@@ -1,6 +1,5 @@
 # Families of real mechanisms at their own fill: who is fastest on each, by size, in both forms of the step.
-from analysis.core.errors import StudyError
-from analysis.core.files import RULE, read_json
+from analysis.core.files import RULE, StudyError, read_json
 from analysis.core.timing import LEFT_OUT
 from analysis.families.rule import shape
 from analysis.families.tables import SCHEMES

@@ -1,6 +1,6 @@
 # The map: who is fastest at which size and fill of the N-four-bar. A column is a size; a scene a size at a fill.
 # All of it is decided from records, so that a run that was interrupted decides alike.
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.map.timed import leaders
 from study.core.cell import Cell, Contender, by_environment
 from study.core.profile import need_keys
@@ -39,8 +39,9 @@ def _name(entry):
 def run(lab, column):
     [entry] = [one for one in lab.settings["columns"] if _name(one) == column]
     natural, *filled = [Scene(entry["variables"], None if fill == NATURAL else fill) for fill in entry["fills"]]
-    if entry == lab.settings["columns"][0]:
-        _unavailable(lab, natural)
+    for one in lab.registry.entries if entry == lab.settings["columns"][0] else ():  # once a record for each that cannot take part at all
+        if not one["available"] and (not lab.set.facts["only"] or one["folder"] in lab.set.facts["only"]):
+            lab.skip(Cell("bench", natural.name, (Contender(one["folder"], one["folder"]),), role="unavailable"), "unavailable", one["reason"])
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])
     timed = [TimedScene(lab, natural, costs, own_fill)]
     for scene in filled:
@@ -56,13 +57,6 @@ def run(lab, column):
     for one in timed:
         one.again(lab.settings["again"])
     _add_between(lab, timed)
-
-
-def _unavailable(lab, scene):
-    """A record for each implementation that cannot take part at all."""
-    for entry in lab.registry.entries:
-        if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
-            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"), "unavailable", entry["reason"])
 
 
 def _seeds(lab, timed):
@@ -98,8 +92,9 @@ def _operations(lab, scene):
 def _add_between(lab, timed):
     """Times the fill half-way in the widest gap between two with other libraries ahead, if the budget has room for one
     more scene like those before."""
-    gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:])
-            if high.fill - low.fill >= 100 * CLOSEST and _other_winner(low, high)]
+    gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:]) if high.fill - low.fill >= 100 * CLOSEST
+            for first, second in [(low.rankings["libraries"], high.rankings["libraries"])]
+            if first and second and second.winner not in first.equivalent and first.winner not in second.equivalent]
     if gaps and lab.left > lab.spent / len(timed):
         _, low, high = max(gaps, key=lambda gap: gap[0])
         scene = Scene(low.scene.variables, round((low.fill + high.fill) / 200, 2))
@@ -107,8 +102,3 @@ def _add_between(lab, timed):
         found.time(lab.settings["processes"])
         found.again(lab.settings["again"])
         timed.insert(timed.index(high), found)
-
-
-def _other_winner(low, high):
-    first, second = low.rankings["libraries"], high.rankings["libraries"]
-    return bool(first and second and second.winner not in first.equivalent and first.winner not in second.equivalent)

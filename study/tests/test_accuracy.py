@@ -3,7 +3,7 @@ import pytest
 
 from analysis.accuracy import subjects, tables
 from analysis.accuracy.points import runs as rows_of
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.records import Record
 from study.accuracy import plan
 from study.accuracy.runs import Runs

@@ -6,8 +6,7 @@ import pandas
 import pytest
 
 from analysis.core import records, schema
-from analysis.core.errors import StudyError
-from analysis.core.files import digest, read_json, write_json
+from analysis.core.files import StudyError, digest, read_json, write_json
 from analysis.core.registry import Registry
 from study.core.cell import CONTROL, Contender
 from study.core.lab import Lab

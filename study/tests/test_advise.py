@@ -11,8 +11,7 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 from analysis.core import records
-from analysis.core.errors import StudyError
-from analysis.core.files import read_json
+from analysis.core.files import StudyError, read_json
 from analysis.core.outcomes import FINISHED
 from study.core.cell import Contender
 from study.core.setting import Setting

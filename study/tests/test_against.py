@@ -4,7 +4,7 @@ import tempfile
 import pandas
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.core import executor, studyset
 from study.tests.conftest import FAKE, TEMPORARY
 from study.tools import against

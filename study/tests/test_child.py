@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.core import child
 
 

@@ -19,8 +19,7 @@ import pandas
 import pytest
 
 from analysis.core import records, schema, site
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_json, read_object, write_json, write_text
+from analysis.core.files import ROOT, StudyError, digest, read_json, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.style import save

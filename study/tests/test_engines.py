@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.records import Record
 from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row

@@ -10,10 +10,10 @@ from analysis.core import records
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.core.view import View
-from analysis.extremes import cells, judge, scenes, tables, trials, verdicts
+from analysis.extremes import cells, judge, tables, trials, verdicts
 from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
-from analysis.extremes.motions import GRAVITY, Chain, Flat
+from analysis.extremes.motions import GRAVITY, Chain, Flat, twin_rod
 from study.core import profile as profiles
 from study.core.cell import Contender
 from study.core.lab import Lab
@@ -275,7 +275,7 @@ def test_the_battery_on_the_real_program_is_resumed(studyset, monkeypatch):
     far = Chain(2, length=1e4, rate=1e-2)
     some = [cells.Extreme("loops", "one", "four-bar:1", Chain(1), steps=80),
             cells.Extreme("length", "1e4 m", "", far, far.document(), step=0.125, steps=80, length=1e4),
-            cells.Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True), steps=80),
+            cells.Extreme("redundant", "rod given twice", "", Chain(1), twin_rod(same_points=True), steps=80),
             cells.Extreme("step", "too long", "", Chain(1), Chain(1).document(), step=0.5, steps=80)]
     monkeypatch.setattr(cells, "extremes", lambda: some)
     monkeypatch.setitem(studyset.profile.parts["extremes"], "cells", 0)

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from analysis.core import records, schema
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.registry import Registry
 from analysis.core.view import View
 from analysis.map import tables

@@ -8,8 +8,7 @@ import numpy
 import pandas
 import pytest
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json
+from analysis.core.files import ROOT, StudyError, write_json
 from analysis.core.timing import Ranking, Ratio
 from study.tests.conftest import study
 from study.tools.merge import agreement, machine

@@ -3,7 +3,7 @@ import subprocess
 
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.tests.conftest import ROOT
 from study.tools import new
 

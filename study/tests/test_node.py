@@ -8,8 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from analysis.core.errors import StudyError
-from analysis.core.files import read_object, write_json, write_text
+from analysis.core.files import StudyError, read_object, write_json, write_text
 from study.core import cluster, locks, node
 from study.core.studyset import StudySet
 from study.tests.conftest import FAKE, ROOT, environment, study

@@ -7,7 +7,7 @@ import numpy
 import pandas
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.registry import Registry
 from study.core.cell import Contender
 from study.scenes import mechanics, metric, modelling, plan, problems, references

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from analysis.core import records, schema
-from analysis.core.errors import StudyError
-from analysis.core.files import read_json, write_json
+from analysis.core.files import StudyError, read_json, write_json
 from study.core import studyset
 from study.tests.conftest import ROOT, study
 from study.tools import fragments, store

@@ -5,7 +5,7 @@ import subprocess
 import numpy
 import pytest
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.tests.conftest import PROGRAM, ROOT, study
 from study.tools import sweep
 

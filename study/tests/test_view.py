@@ -12,7 +12,7 @@ import numpy
 import pytest
 from matplotlib.image import imread
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
 from study.tools.viewer import main, page, program, trajectory

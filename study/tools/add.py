@@ -6,8 +6,7 @@ from collections import Counter, namedtuple
 from dataclasses import dataclass
 
 from analysis.core import schema, timing
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_json, write, write_json
+from analysis.core.files import ROOT, StudyError, digest, read_json, write, write_json
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
 from study.core.executor import program_of

@@ -7,8 +7,7 @@ from dataclasses import replace
 import pandas
 
 from analysis.core import timing
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, write
+from analysis.core.files import ROOT, StudyError, digest, write
 from study.core import child, locks
 from study.core.cell import Cell, by_environment
 from study.core.executor import program_of

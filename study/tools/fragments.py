@@ -3,8 +3,7 @@ import json
 import re
 
 from analysis.core import site
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, RULE, as_json, read_json, write_text
+from analysis.core.files import ROOT, RULE, StudyError, as_json, read_json, write_text
 from analysis.core.view import Folder
 from study.tools.merge import agreement
 

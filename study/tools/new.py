@@ -2,8 +2,7 @@
 import re
 import shutil
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_text
+from analysis.core.files import ROOT, StudyError, write_text
 from study.core.options import Parser
 
 SKELETON = ROOT / "study" / "tools" / "skeleton"

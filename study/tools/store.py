@@ -7,8 +7,7 @@ import shutil
 import subprocess
 
 from analysis.core import records, schema
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, read_json
+from analysis.core.files import ROOT, StudyError, read_json
 from analysis.core.parts import parts
 from study.core import locks
 from study.core.options import Parser, directory

@@ -15,8 +15,7 @@ from matplotlib.collections import LineCollection
 from scipy.stats import binned_statistic_2d
 
 from analysis.core import style
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_text
+from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.cluster import end_jobs, profile_folder, runs

@@ -5,8 +5,7 @@ import sys
 import time
 from functools import partial
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, write_json
+from analysis.core.files import ROOT, StudyError, digest, write_json
 from study.core import locks
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive

@@ -3,7 +3,7 @@
 import math
 from argparse import Namespace
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.setting import Setting, read_settings

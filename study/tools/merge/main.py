@@ -1,8 +1,7 @@
 # study/merge SET SET …: which winners and equivalence sets hold on all machines, which depend on the processor.
 import pandas
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_text
+from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.site import template
 from study.core.options import Parser, directory
 from study.core.studyset import opened

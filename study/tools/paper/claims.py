@@ -71,7 +71,7 @@ def _single(known):
 def _assembly(known):
     cells = known.tables("map")["cells"]
     scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
-    lows = [one.low for one in (known.results.ratio(scene, DENSE, HYBRID) for scene in scenes) if one]
+    lows = [one.low for one in (known.results.versus(scene, DENSE, HYBRID) for scene in scenes) if one]
     return (min(lows) > 1, f"above 1; here {span(lows)} at the lower ends") if lows else (None, "")
 
 

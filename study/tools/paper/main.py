@@ -4,8 +4,7 @@ import re
 import shutil
 import subprocess
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json, write_text
+from analysis.core.files import ROOT, StudyError, write_json, write_text
 from analysis.core.style import save
 from study.core.options import Parser, directory
 from study.tools.fragments import main_set

@@ -198,7 +198,7 @@ def _fill(known):
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
         mine = timed[timed.implementation == variant]
         found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
-    both = {scene: one.value for scene in filled.scene for one in [known.results.ratio(scene, DENSE, HYBRID)] if one}
+    both = {scene: one.value for scene in filled.scene for one in [known.results.versus(scene, DENSE, HYBRID)] if one}
     return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed),
                     "faster": of_rows(lambda _: span(both.values()), "map/tidy", filled[filled.scene.isin(both)])}
 

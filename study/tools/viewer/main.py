@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy
 
-from analysis.core.errors import StudyError
-from analysis.core.files import write
+from analysis.core.files import StudyError, write
 from study.core.options import Parser, positive
 from study.tools.viewer import page, program, trajectory
 

@@ -7,8 +7,7 @@ from collections import namedtuple
 from functools import partial
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, StudyError
 from study.core import child
 from study.core.executor import program_of
 

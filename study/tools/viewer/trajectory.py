@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import numpy
 
-from analysis.core.errors import StudyError
+from analysis.core.files import StudyError
 
 CURVES = ("kinetic_energy", "potential_energy", "constraint_violation")
 LONGEST = 2**24  # bytes that are read of a line: a hundred times what the largest scenes need
