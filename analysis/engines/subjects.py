@@ -7,7 +7,7 @@
 # here from its two angles, that of Andrews' mechanism in andrews.py, independently of every program.
 import functools
 import math
-from collections import namedtuple
+from dataclasses import dataclass
 
 import numpy
 from scipy.integrate import solve_ivp
@@ -23,11 +23,19 @@ FLOOR = 1e-13      # m: no error is shown below it; the references' own are belo
 LONGEST = 1e-3     # s, a step of the integration of the double pendulum: rounding alone is left
 
 
-class Subject(namedtuple("Subject", "name title scene duration words regular loops points judged steps", defaults=(True, 0, "", 1e-2, (2e-2, 1e-5)))):
-    """name: a column of the part too; title: in tables and figures; scene: of ours; words: that tell an engine's program what to simulate;
-    regular: whether the motion passes no singular position; loops: of the four-bar, whose error the programs tell; points: outputs that
-    are compared where they do not; judged: s, errors are evaluated so often, as the engines' programs do; steps: s, the longest and the
-    shortest of ours."""
+@dataclass(frozen=True)
+class Subject:
+    name: str            # a column of the part too
+    title: str           # in tables and figures
+    scene: str           # of ours
+    duration: float      # s
+    words: tuple         # that tell an engine's program what to simulate
+    regular: bool = True  # whether the motion passes no singular position
+    loops: int = 0       # of the four-bar, whose error the programs tell
+    points: str = ""     # outputs that are compared where they do not
+    judged: float = 1e-2  # s: errors are evaluated so often, as the engines' programs do
+    steps: tuple = (2e-2, 1e-5)  # s, the longest and the shortest of ours
+
     place = property(lambda self: (self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops))  # in tables and figures
 
     def error(self, record, engine):

@@ -1,6 +1,6 @@
 # A contest on one scene: a look at everyone, the gate for those who are near the fastest, and the times of those who agree.
 from collections import namedtuple
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from study.core.cell import Cell, by_environment, twin_of
@@ -41,9 +41,18 @@ def agreeing(lab, asked, **limits):
     return [[who for who in one.contenders if said[who][0] == "agrees"] for one, said in zip(asked, verdicts(lab, asked, **limits))]
 
 
-# A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`. settings: of the step; wide: names
-# of those that are up to WIDE; stretch: that is timed, else the scene's; look: its steps, with this patience.
-Form = namedtuple("Form", "role contenders processes samples settings wide stretch look patience", defaults=((), (), (), STEPS, 1.0))
+@dataclass(frozen=True)
+class Form:
+    """A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`."""
+    role: str
+    contenders: list
+    processes: int
+    samples: int
+    settings: tuple = ()   # of the step
+    wide: tuple = ()       # names of those that are up to WIDE
+    stretch: tuple = ()    # that is timed, else the scene's
+    look: int = STEPS      # steps of the look
+    patience: float = 1.0
 
 
 def contests(lab, scene, forms, *, own, always=False, control=False):

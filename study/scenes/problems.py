@@ -1,5 +1,5 @@
 # The standard problems of problems.yaml: what is run, and what it is judged by.
-from collections import namedtuple
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -11,9 +11,24 @@ from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED
 LIST = Path(__file__).resolve().parent / "problems.yaml"
 
 
-class Problem(namedtuple("Problem", "name title scene duration steps known judged penalty tolerance max_passes check_step conserved mirrored "
-                         "everyone published", defaults=("auto", "auto", 20, None, False, (), False, None))):
-    """LIST says what each is."""
+@dataclass(frozen=True)
+class Problem:
+    name: str
+    title: str
+    scene: str
+    duration: float
+    steps: tuple
+    known: str
+    judged: tuple
+    penalty: str = "auto"
+    tolerance: str = "auto"
+    max_passes: int = 20
+    check_step: float | None = None
+    conserved: bool = False
+    mirrored: tuple = ()
+    everyone: bool = False
+    published: str | None = None
+
     options = property(lambda self: (("penalty", f"{self.penalty}"), ("tolerance", f"{self.tolerance}"), ("max-passes", f"{self.max_passes}")))
     settings = property(lambda self: tuple(word for option, value in self.options for word in (f"--{option}", value)))
 
