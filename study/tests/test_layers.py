@@ -2,6 +2,7 @@
 import ast
 import re
 import subprocess
+import sys
 
 import yaml
 
@@ -134,3 +135,17 @@ def test_no_modules_import_each_other_in_a_circle():
         for name in free:
             del left[name]
     assert {name: sorted(found & set(left)) for name, found in left.items()} == {}
+
+
+def test_what_plans_import_is_looked_for_before_they_are():
+    """study/run reads the plans before its set-up installs what is missing: python.sh has to see to it."""
+    script = ("import importlib, sys, study.main; from analysis.core.parts import parts\n"
+              "for part in parts(): importlib.import_module(f'study.{part}.plan')\nprint(*sys.modules)")
+    loaded = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    found = set()
+    for name in loaded:
+        for node in ast.parse((ROOT / MODULES[name]).read_text(encoding="utf-8")).body if name in MODULES else ():
+            if isinstance(node, (ast.Import, ast.ImportFrom)):
+                found |= {one.name for one in node.names} if isinstance(node, ast.Import) else {node.module}
+    needed = {one.partition(".")[0] for one in found} - {*sys.stdlib_module_names, "study", "analysis"}
+    assert "numpy" in needed and needed <= set(re.findall(r'"(\w+)"', (ROOT / "study" / "python.sh").read_text(encoding="utf-8")))
