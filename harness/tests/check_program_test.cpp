@@ -36,6 +36,13 @@ TEST(CheckProgram, WhatWasTriedAgreesAndBelongsToAVariant) {
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
 }
 
+TEST(CheckProgram, WhatAStiffDamperLeavesIsNoDisagreement) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const auto run = test::run_mbs("check '" MBS_ROOT "/harness/scenes/problems/a05_governor.json' --time-limit 2000 "
+      "--scheme saddle-point --implementation csc_ldl/uplooking,eigen_dense/llt");
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+}
+
 TEST(CheckProgram, AFileMayHaveAnyName) {
   const test::Folder folder;
   const std::string scene = folder.file("\xff.json"), verdicts = folder.file("verdicts");

@@ -147,6 +147,22 @@ TEST(AutomaticTolerance, OfTheSaddlePointFormIsLooserWhereItConvergesQuadratical
   EXPECT_DOUBLE_EQ(automatic_tolerance(model, settings), 4e-8);
 }
 
+TEST(AutomaticTolerance, IsTighterWhereAStiffDamperTurnsErrorsRound) {
+  const double limit = 2 * 3.0 / kStep;  // N s/m, for 3 kg
+  for (const auto& [damping, expected] : {std::pair{0.99 * limit, 1e-8}, {1.01 * limit, 1e-9}}) {
+    ModelData data;
+    data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}, {"C", -1, {1, 1, 0}}};
+    data.mass = {{0, 0, 3.0}, {1, 1, 3.0}};
+    data.force = {0.0, -30.0};
+    data.initial_velocity = {0.0, 0.0};
+    data.dot_constraints = {{0, 1, 0, 1, 1.0, "rod"}};
+    data.springs = {{1, 2, 0.0, damping, 1.0, "damper"}};
+    const Model model(std::move(data));
+    const StepSettings settings{.step = kStep, .penalty = 1e9, .scheme = Scheme::saddle_point};
+    EXPECT_DOUBLE_EQ(automatic_tolerance(model, settings), expected);
+  }
+}
+
 TEST(AutomaticTolerance, FarFromTheOriginIsTheRoundingOfCoordinates) {
   ModelData data;
   data.points = {{"A", -1, {1e6, 0, 0}}, {"B", 0, {1e6 + 1, 0, 0}}};

@@ -12,6 +12,7 @@
 
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
+#include "model_math/spring_diagonal.hpp"
 #include "model_math/turning.hpp"
 #include "run/initial_state.hpp"
 #include "usage_error.hpp"
@@ -131,13 +132,28 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
   return value;
 }
 
+namespace {
+
+/// Whether a step is longer than 2 m/c of some coordinate. Then the trapezoidal rule turns what is
+/// wrong in its speed round in each step, and hardly damps it.
+bool has_stiff_damper(const Model& model, double step) {
+  const std::vector<double> mass = mass_diagonal(model), damping = spring_diagonal(model).damping;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    if (step * damping[i] > 2 * mass[i]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 double automatic_tolerance(const Model& model, const StepSettings& settings) {
   const double step = settings.step;
   const double length = std::min(fastest_turning(model).length, 1.0);
   // The saddle-point form converges quadratically, with a tangent of every pass: what it leaves is
-  // far below the last |Delta q|.
-  const bool is_quadratic =
-      settings.scheme == Scheme::saddle_point && settings.tangent == TangentReuse::none;
+  // far below the last |Delta q|. But a stiff damper makes even that a force.
+  const bool is_quadratic = settings.scheme == Scheme::saddle_point &&
+                            settings.tangent == TangentReuse::none &&
+                            !has_stiff_damper(model, step);
   const double of_paper = step / 1.25e-3;
   const double wanted =
       length *

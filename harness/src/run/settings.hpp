@@ -59,12 +59,13 @@ double rounding_length(const Model& model);
 
 /// The tolerance `auto`, m: 1e-9 l at 1.25e-3 s and proportional to step^4, at most 1e-6 l, so that
 /// what Newton leaves stays below the integrator's own error at every step; in the saddle-point
-/// form with a tangent of every pass, which converges quadratically, 1e-8 l and step^2: tighter
-/// ones are below the noise of solves at singular positions, where passes then go on to their
-/// limit. l is that of fastest_turning(), at most 1 m. But not below ten times the rounding noise
-/// of a Newton step, which it could not reach: u max|q|, and in the constraints u l_r sqrt(1 +
-/// alpha dt^2/4 s_mean) with l_r = rounding_length(); u is that of the precision. For the step,
-/// penalty and precision of `settings`.
+/// form with a tangent of every pass, which converges quadratically, and without a stiff damper
+/// (step c > 2 m in a coordinate), 1e-8 l and step^2: tighter ones are below the noise of solves at
+/// singular positions, where passes then go on to their limit. l is that of fastest_turning(), at
+/// most 1 m. But not below ten times the rounding noise of a Newton step, which it could not reach:
+/// u max|q|, and in the constraints u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r =
+/// rounding_length(); u is that of the precision. For the step, penalty and precision of
+/// `settings`.
 double automatic_tolerance(const Model& model, const StepSettings& settings);
 
 }  // namespace mbs
