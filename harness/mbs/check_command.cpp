@@ -157,14 +157,16 @@ int check(const CheckOptions& options) {
     throw;
   }
   const auto agreeing = std::ranges::count_if(verdicts, &Verdict::agrees);
-  fmt::print("{} of {} agree with the reference\n", agreeing, verdicts.size());
-  if (file) write_rows(*file, verdicts);
   const auto unsupported = std::ranges::count(verdicts, "unsupported", &Verdict::verdict);
-  if (unsupported == std::ssize(verdicts)) {
+  const auto served = std::ssize(verdicts) - unsupported;
+  fmt::print("{} of {} agree with the reference{}\n", agreeing, served,
+             unsupported > 0 ? fmt::format(" (unsupported: {})", unsupported) : "");
+  if (file) write_rows(*file, verdicts);
+  if (served == 0) {
     fmt::print(stderr, "mbs: nothing was checked: none of these serves that (mbs list: what each does)\n");
     return 1;
   }
-  return agreeing + unsupported == std::ssize(verdicts) ? 0 : 1;
+  return agreeing == served ? 0 : 1;
 }
 
 }  // namespace
