@@ -6,8 +6,8 @@ import numpy
 
 from analysis.core.gather import gather
 
-NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("dense", "rows")}
-SHOWN = ("per_column", "dense", "rows")
+NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("saddle_dense", "rows")}
+SHOWN = ("per_column", "dense", "saddle_dense", "rows")
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 

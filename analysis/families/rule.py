@@ -183,7 +183,11 @@ class _Data:
         self.registry, known = registry, tables["mechanisms"].set_index("scene")
         complete = known[known[list(FEATURES)].notna().all(axis=1)]
         self.features, self.record = complete[list(dict.fromkeys((*FEATURES, *ALONE)))].astype(float), complete.record
-        self.features["rows"] = self.features.n + self.features.m  # of the matrix of Eq. (12)
+        n, m = self.features.n, self.features.m
+        self.features["rows"] = n + m  # of the matrix of Eq. (12)
+        # Its operations in % of a dense solver's, as `mbs describe` prints them (harness/src/describe/elimination.hpp).
+        self.features["saddle_dense"] = 100 * self.features.saddle_flops / (
+            n * m**2 + _full_flops(m) + self.features.stiff * (_full_flops(n) + n**2 * m))
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
         shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
         for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):
@@ -214,6 +218,10 @@ class _Data:
         """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""
         losses = self.losses[scheme].clip(upper=MOST)
         return losses * (1 + 4 * losses)
+
+
+def _full_flops(n):
+    return n * (n + 1) * (2 * n + 1) / 6
 
 
 def shape(scene):

@@ -8,6 +8,8 @@ from analysis.families.rule import document, summary
 
 LIMITS = {"per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
           "dense": ("a factorization takes {} % or more of a full one's operations", "a factorization takes less than {} % of a full one's operations"),
+          "saddle_dense": ("factorizing the saddle-point matrix takes {} % or more of a dense solver's operations",
+                           "factorizing the saddle-point matrix takes less than {} % of a dense solver's operations"),
           "rows": ("n + m ≥ {}", "n + m < {}")}
 
 

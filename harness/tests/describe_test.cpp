@@ -155,7 +155,7 @@ TEST(Describe, Text) {
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2",
         "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations, 60.4 % "
         "of a full L's; tree of height 4; ",
-        "saddle-point matrix "}) {
+        "  saddle-point matrix ", "operations, 73.7 % of a dense solver's; "}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }
   EXPECT_EQ(text.find("artificial"), std::string::npos);

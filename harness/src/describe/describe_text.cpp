@@ -84,15 +84,15 @@ std::string penalty_text(const json& window) {
                      window["upper_from"].get<std::string>(), step, rest);
 }
 
-std::string elimination_text(const json& found) {
+/// `all`: what the operations are a share of, with its name.
+std::string elimination_text(const json& found, double all, const char* name) {
   if (found.is_null()) return "not computed, it is too much work";
   const auto factor = found["factor_nonzeros"].get<long>();
   const double mean = found["per_column"], flops = found["flops"];
-  const double columns = std::round(static_cast<double>(factor) / std::max(mean, 1.0));
   return fmt::format(
-      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations, {:.3g} % of a full L's; "
+      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations, {:.3g} % of {}; "
       "tree of height {}; {} supernodes",
-      factor, mean, found["widest"].get<int>(), flops, 100 * flops / std::max(full_flops(columns), 1.0),
+      factor, mean, found["widest"].get<int>(), flops, 100 * flops / std::max(all, 1.0), name,
       found["height"].get<int>(), found["supernodes"].get<int>());
 }
 
@@ -137,11 +137,15 @@ std::string describe_text(const json& d) {
   text += text_line("mass matrix M", matrix_text(d["mass"], "n^2"));
   text += text_line("Jacobian", matrix_text(d["jacobian"], "m n"));
   text += text_line("tangent", matrix_text(d["tangent"], "n^2"));
+  const json& orderings = d["elimination"]["orderings"];
+  const double n = d["variables"], m = d["constraints"];
   for (const auto& [label, ordering] :
-       {std::pair{"elimination, AMD", "AMD"}, std::pair{"  as given", "natural"},
-        std::pair{"  saddle-point matrix", "saddle-point"}}) {
-    text += text_line(label, elimination_text(d["elimination"]["orderings"][ordering]));
+       {std::pair{"elimination, AMD", "AMD"}, std::pair{"  as given", "natural"}}) {
+    text += text_line(label, elimination_text(orderings[ordering], full_flops(n), "a full L's"));
   }
+  const double of_dense = dense_saddle_flops(n, m, d["features"]["stiff"] == 1);
+  text += text_line("  saddle-point matrix",
+                    elimination_text(orderings["saddle-point"], of_dense, "a dense solver's"));
   text += text_line("passes a step", fmt::format("about {:.3g}, {:.3g} in the saddle-point form",
                                                  d["passes"]["penalty"].get<double>(),
                                                  d["passes"]["saddle-point"].get<double>()));

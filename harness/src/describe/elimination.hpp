@@ -48,6 +48,11 @@ std::optional<Elimination> eliminate(const SymmetricPattern& pattern,
 
 /// Flops of an L of n columns without zeros.
 constexpr double full_flops(double n) { return n * (n + 1) * (2 * n + 1) / 6; }
+/// Flops of a dense solver of the saddle-point form: S = Phi_q T0^-1 Phi_q^T and its factor; where
+/// springs change T0, its factor and the rows of Phi_q solved with it.
+constexpr double dense_saddle_flops(double n, double m, bool has_springs) {
+  return n * m * m + full_flops(m) + (has_springs ? full_flops(n) + n * n * m : 0.0);
+}
 
 /// 0, 1, 2, ...
 std::vector<int> natural_order(const SymmetricPattern& pattern);
