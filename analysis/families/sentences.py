@@ -60,10 +60,8 @@ def cases(tables, view):
         found.append({"case": "You have a scene file", "link": "families.html#rule",
                       "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
     for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
-        usual, *others = sorted((some for _, some in rows.groupby("library", sort=False)), key=lambda some: -some.scenes.sum())
-        taken = [usual.library.iloc[0], *(f"but {some.library.iloc[0]} if {', or '.join(map(where, some.to_dict('records')))}" for some in others)]
         found.append({"case": f"By hand, {scheme} form", "link": "families.html#by-hand",
-                      "take": "; ".join(taken) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
+                      "take": _taken(rows) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
@@ -75,8 +73,28 @@ def cases(tables, view):
 
 def where(row):
     """The limits of a case of the rule by hand."""
-    return " and ".join(LIMITS[name][end].format(number(row[f"{('least', 'below')[end]}_{name}"]))
-                        for name in by_hand.SHOWN for end in (0, 1) if not pandas.isna(row[f"{('least', 'below')[end]}_{name}"]))
+    return _said(_limits(row))
+
+
+def _limits(row):
+    """[(number, 0: from it on or 1: below it, limit)]"""
+    columns = [(name, end, f"{('least', 'below')[end]}_{name}") for name in by_hand.SHOWN for end in (0, 1)]
+    return [(name, end, row[column]) for name, end, column in columns if not pandas.isna(row[column])]
+
+
+def _said(limits):
+    return " and ".join(LIMITS[name][end].format(number(value)) for name, end, value in limits)
+
+
+def _taken(rows):
+    """The cases of a form in words: one that a single limit parts from the others before these, or what is taken most before the others."""
+    if len(rows) == rows.library.nunique() == 3:
+        first, second, third = sorted(rows.to_dict("records"), key=lambda row: len(_limits(row)))
+        name, end, value = _limits(first)[0]
+        rest = [limit for limit in _limits(second) if limit != (name, 1 - end, value)]
+        return f"{first['library']} if {where(first)}; else {second['library']} if {_said(rest)}, else {third['library']}"
+    usual, *others = sorted((some for _, some in rows.groupby("library", sort=False)), key=lambda some: -some.scenes.sum())
+    return "; ".join([usual.library.iloc[0], *(f"but {some.library.iloc[0]} if {', or '.join(map(where, some.to_dict('records')))}" for some in others)])
 
 
 def _lost(found, count):

@@ -179,6 +179,16 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
 
+def test_three_cases_by_hand_are_told_one_after_the_other():
+    case = {"scheme": "penalty", "scenes": 1} | {f"{end}_{name}": None for name in by_hand.SHOWN for end in ("least", "below")}
+    rows = [case | {"library": "one/a", "below_per_column": 14.0}, case | {"library": "one/b", "least_per_column": 14.0, "below_dense": 28.0},
+            case | {"library": "one/c", "least_per_column": 14.0, "least_dense": 28.0}]
+    told = ("one/a if the factor has less than 14 non-zeros a column; "
+            "else one/b if a factorization takes less than 28 % of a full one's operations, else one/c")
+    assert sentences._taken(pandas.DataFrame(rows)) == told
+    assert sentences._taken(pandas.DataFrame([rows[0], rows[1], rows[2] | {"library": "one/a"}])).startswith("one/a; but one/b if the factor has 14 or")
+
+
 def test_cases_by_hand_part_where_the_fastest_changes():
     cost, at, below, above = by_hand.limit(numpy.array([30.0, 1.0, 2.0, 20.0]), numpy.array([[1.0, 0.0], [0.0, 1.0], [0.0, 1.0], [1.0, 0.0]]))
     assert (cost, at, below, above) == (0.0, 6.0, 0, 1)
