@@ -7,6 +7,8 @@ import os
 import threading
 from pathlib import Path
 
+import yaml
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
 
@@ -40,6 +42,11 @@ def read_object(path, **kinds):
         if not isinstance(found.get(name), kind):
             raise StudyError(f"{path} is damaged ({name} is {'of another type' if name in found else 'missing'})")
     return found
+
+
+def from_yaml(text):
+    """By libyaml where there is one: a tenth of the time."""
+    return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
 def write_json(path, data):

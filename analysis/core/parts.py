@@ -1,9 +1,7 @@
 # The one list of parts, and of pages beside theirs: study/parts.yaml.
 from functools import cache
 
-import yaml
-
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, from_yaml
 
 LIST = ROOT / "study" / "parts.yaml"
 
@@ -20,4 +18,4 @@ def pages():
 
 @cache
 def _listed(path):
-    return yaml.safe_load(path.read_text(encoding="utf-8"))
+    return from_yaml(path.read_text(encoding="utf-8"))

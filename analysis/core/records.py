@@ -2,6 +2,8 @@
 #
 # A record's file is {"sha256": D, "record": {…}} in two lines; D is the digest of the second one's value as it
 # stands there, so that a changed or truncated file is named and never believed.
+import contextlib
+import gc
 import io
 import json
 import lzma
@@ -107,6 +109,19 @@ def archive_of(folder, part):
     return Path(folder) / "raw" / f"{part}.tar.xz"
 
 
+@contextlib.contextmanager
+def without_collection():
+    """Where many records are made or used: garbage would be looked for in all of them again and again, a quarter of the time."""
+    used = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if used:
+            gc.enable()
+
+
+@without_collection()
 def read_part(folder, part):
     """All records of a part, by name; of a stored set from its archive."""
     archive = archive_of(folder, part)

@@ -4,9 +4,7 @@ import math
 from functools import cache
 from pathlib import Path
 
-import yaml
-
-from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
+from analysis.core.files import ROOT, StudyError, digest, from_yaml, read_object, write, write_json
 from analysis.core.records import archive_of, need_same_origin, read_part
 
 TYPES = ("text", "number", "flag")
@@ -20,7 +18,7 @@ def of_part(part):
 
 def read(path):
     """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
-    found = yaml.safe_load(path.read_text(encoding="utf-8"))
+    found = from_yaml(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
         wrong = [name for name, one in columns.items() if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
         if wrong or "record" not in columns:

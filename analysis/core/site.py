@@ -13,6 +13,7 @@ from analysis.core import schema
 from analysis.core.controls import disturbance, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
+from analysis.core.records import without_collection
 from analysis.core.style import save
 from analysis.core.text import between, ends, number
 from analysis.core.view import View
@@ -20,6 +21,7 @@ from analysis.core.view import View
 HERE = Path(__file__).parent
 
 
+@without_collection()
 def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
@@ -45,6 +47,7 @@ def write_part(folder, part):
         write_json(folder / part / name, known)
 
 
+@without_collection()
 def write_index(folder, part=None):
     """index.html: the answers of the parts that are done; the further pages, where all that is new is `part` only those that are made
     of it; and a page for each of the other parts."""

@@ -138,10 +138,13 @@ def save(figure, path, above=""):
     if figure.get_layout_engine():  # made once here, where `savefig` with "tight" would draw all of the figure for that
         figure.get_layout_engine().execute(figure)
         figure.set_layout_engine(None)
-    box, kind, (width, height) = figure.get_tightbbox().frozen(), Path(path).suffix, figure.get_size_inches()
+    kind, (width, height), inches = Path(path).suffix, figure.get_size_inches(), figure.dpi_scale_trans.inverted()
+    # Each of its children once, with all that they hold: figure.get_tightbbox() asks axes twice and legends three times.
+    shown = [one for one in figure.get_children() if one is not figure.patch and one.get_visible()]
+    box = Bbox.union([one.get_tightbbox() for one in shown]).transformed(inches)
     if above:
         line = figure.text(box.x0 / width, (box.y1 + 0.08) / height, above, fontsize=8, color=GREY, va="bottom")
-        box = Bbox.union([box, line.get_window_extent().transformed(figure.dpi_scale_trans.inverted())])
+        box = Bbox.union([box, line.get_window_extent().transformed(inches)])
     box = box.padded(matplotlib.rcParams["savefig.pad_inches"])
     write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches=box,
                                                metadata={"Date": None} if kind == ".svg" else None))

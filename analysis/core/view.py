@@ -5,7 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.files import StudyError, read_object
+from analysis.core.files import StudyError, from_yaml, read_object
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 
@@ -37,6 +37,6 @@ class View(Folder):
         """The profile's of this part."""
         path = self.folder / "profile.yaml"
         try:
-            return yaml.safe_load(path.read_text(encoding="utf-8"))["parts"][self.part]
+            return from_yaml(path.read_text(encoding="utf-8"))["parts"][self.part]
         except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError) as error:
             raise StudyError(f"{path} is damaged: {' '.join(str(error).split())[:200]}") from error

@@ -1,12 +1,11 @@
 # What the template of explore.html gets: the data as JSON, and questions with the answers of this set.
 import json
 
-import yaml
 from scipy import special
 
 from analysis.accuracy.winners import NEAR
 from analysis.core import timing
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, from_yaml
 from analysis.core.style import Look
 from analysis.core.view import Folder, facts_of
 from analysis.explorer import data
@@ -23,7 +22,7 @@ def context(folder):
     registries = [Folder(one).registry for one in sets]
     about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
-    settings = yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]
+    settings = from_yaml(SETTINGS.read_text(encoding="utf-8"))["settings"]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
              "settings": {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}"
                                                 for key, value in one.get("options", {}).items()) for one in settings},

@@ -10,13 +10,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string>
 #include <vector>
 
 #include "environment/build_info.hpp"
 #include "environment/machine.hpp"
 #include "registry/registry.hpp"
+#include "regular_expression.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -111,7 +111,7 @@ TEST(EnvironmentRecord, HasEveryKeyOnceAndNothingEmpty) {
 TEST(EnvironmentRecord, NamesTheCommitAndTheBuild) {
   const BuildInfo& build = build_info();
   const std::string commit = build.commit, dirty = build.dirty;
-  EXPECT_TRUE(std::regex_match(commit, std::regex("[0-9a-f]{40}|unknown"))) << commit;
+  EXPECT_TRUE(RegularExpression("^([0-9a-f]{40}|unknown)$").found_in(commit)) << commit;
   const bool known = std::filesystem::exists(MBS_ROOT "/.git") &&
                      std::system("git --version > /dev/null 2>&1") == 0;
   EXPECT_EQ(commit != "unknown", known) << commit;
@@ -124,7 +124,7 @@ TEST(EnvironmentRecord, NamesTheCommitAndTheBuild) {
   EXPECT_NE(std::string(build.flags).find("undefined"), std::string::npos) << build.flags;
   EXPECT_NE(std::string(build.flags).find("-fsanitize="), std::string::npos) << build.flags;
 #endif
-  EXPECT_TRUE(std::regex_match(build.compiler, std::regex("\\w+ [0-9.]+"))) << build.compiler;
+  EXPECT_TRUE(RegularExpression("^[[:alnum:]]+ [0-9.]+$").found_in(build.compiler)) << build.compiler;
 }
 
 TEST(EnvironmentRecord, NamesTheLibrariesOfAllAvailableImplementations) {
@@ -151,7 +151,7 @@ TEST(EnvironmentRecord, GivesNeitherHostNorHome) {
 }
 
 TEST(Machine, FingerprintIsShortAndStable) {
-  EXPECT_TRUE(std::regex_match(machine_fingerprint(), std::regex("[0-9a-f]{12}")));
+  EXPECT_TRUE(RegularExpression("^[0-9a-f]{12}$").found_in(machine_fingerprint()));
   EXPECT_EQ(machine_fingerprint(), machine_fingerprint());
   EXPECT_FALSE(cpu_model().empty());
 }
@@ -178,6 +178,7 @@ TEST(CommandLine, IsRepeatableButNamesNoFolders) {
             "mbs bench four-bar:4 '--benchmark_filter=a b' --benchmark_out=x.json scene.json ''");
   const std::string here = (std::filesystem::current_path() / "results" / "x.json").string();
   EXPECT_EQ(command_line({"mbs", "--json", here}), "mbs --json results/x.json");
+  EXPECT_EQ(command_line({"mbs", "simulate", "it's.json"}), R"(mbs simulate 'it'\''s.json')");
 }
 
 TEST(WithoutHome, ReplacesHomesOnly) {
@@ -186,6 +187,7 @@ TEST(WithoutHome, ReplacesHomesOnly) {
     EXPECT_EQ(without_home(std::string(home) + "/x"), "~/x");
   }
   EXPECT_EQ(without_home("/home/alice/lib;/usr/lib /Users/bob"), "~/lib;/usr/lib ~");
+  EXPECT_EQ(without_home("-I/home/a:-I/Users/home/x /home/"), "-I~:-I~/x /home/");
   EXPECT_EQ(without_home("/usr/home-made"), "/usr/home-made");
 }
 

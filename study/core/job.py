@@ -1,5 +1,4 @@
 # One job of the workflow: the cells of a part or, on a cluster, of a column; a page; the front page.
-import gc
 import importlib
 import os
 import select
@@ -72,9 +71,7 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    gc.disable()  # garbage would be looked for in all records again and again, a quarter of the time
     site.write_part(studyset.folder, part)
-    gc.enable()
 
 
 def pages(studyset):
@@ -91,9 +88,7 @@ def pages(studyset):
 def index(studyset, part=None):
     """`part`: all that is new since it was made."""
     from analysis.core import site
-    gc.disable()
     site.write_index(studyset.folder, part)
-    gc.enable()
 
 
 def end_with(front):

@@ -4,7 +4,7 @@ from collections import namedtuple
 
 import yaml
 
-from analysis.core.files import ROOT, StudyError, read_bytes
+from analysis.core.files import ROOT, StudyError, from_yaml, read_bytes
 from analysis.core.parts import parts
 
 FOLDER = ROOT / "study" / "profiles"
@@ -30,7 +30,7 @@ def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind. A set may be older than a part:
     its profile needs the `chosen` ones."""
     try:
-        data = yaml.safe_load(read_bytes(path).decode())
+        data = from_yaml(read_bytes(path).decode())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise StudyError(f"{path}: not valid YAML: {' '.join(str(error).split())[:300]}") from error
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})

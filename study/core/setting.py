@@ -1,9 +1,7 @@
 # A setting of a step: the scheme and what is changed beside it, as options of `mbs simulate`, `bench` and `check`.
 from dataclasses import dataclass, field
 
-import yaml
-
-from analysis.core.files import ROOT, StudyError
+from analysis.core.files import ROOT, StudyError, from_yaml
 
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
@@ -46,7 +44,7 @@ class Setting:
 def read_settings(path=LIST):
     """[Setting] of study/settings.yaml, the default one first."""
     found = []
-    for entry in yaml.safe_load(path.read_text(encoding="utf-8"))["settings"]:
+    for entry in from_yaml(path.read_text(encoding="utf-8"))["settings"]:
         if not isinstance(entry.get("name"), str) or set(entry) - {"name", "options"}:
             raise StudyError(f"{path}: {entry} must have a name, may have options, no more")
         options = {option: "" if value is True else str(value) for option, value in entry.get("options", {}).items()}

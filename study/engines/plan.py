@@ -6,9 +6,7 @@ import random
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import yaml
-
-from analysis.core.files import ROOT, StudyError
+from analysis.core.files import ROOT, StudyError, from_yaml
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of
@@ -48,7 +46,7 @@ class EngineSetting:
 
 def read_list(path=LIST):
     """{engine: [EngineSetting]}"""
-    listed = yaml.safe_load(path.read_text(encoding="utf-8"))
+    listed = from_yaml(path.read_text(encoding="utf-8"))
     values = {over: tuple(map(float, found)) for over, found in listed["values"].items()}
     for over, found in values.items():
         if list(found) != sorted(found, reverse=True):

@@ -3,9 +3,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import yaml
-
-from analysis.core.files import StudyError
+from analysis.core.files import StudyError, from_yaml
 from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED
 
 LIST = Path(__file__).resolve().parent / "problems.yaml"
@@ -40,7 +38,7 @@ class Problem:
 @cache
 def read_list(path=LIST):
     """(names of the two that are compared, [Problem])"""
-    data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    data = from_yaml(path.read_text(encoding="utf-8"))
     listed = [Problem(**entry | {key: tuple(map(tuple, entry[key])) if key == "mirrored" else tuple(entry[key])
                                  for key in ("steps", "judged", "mirrored") if key in entry}) for entry in data["problems"]]
     for problem in listed:

@@ -63,9 +63,14 @@ def faults(kept):
             yield f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, build and measure again"
         yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))
     yield from _lacking(kept)
+    yield from of_records(kept)
+
+
+def of_records(kept):
+    """What is wrong with its records and the tables that were made of them."""
     for part in kept.facts["parts"]:
         try:
-            there, tables = schema.records_of(kept.folder, part, usual), kept.folder / part / schema.DIGESTS
+            there, tables = schema.records_of(kept.folder, part, kept.facts["context"]), kept.folder / part / schema.DIGESTS
             if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
                 yield f"{kept.folder / part}: its tables are not those of its records: run study/figures {kept.folder}"
         except StudyError as error:

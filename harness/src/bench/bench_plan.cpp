@@ -8,11 +8,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <regex>
 #include <utility>
 
 #include "bench/null_variant.hpp"
 #include "exact/four_bar_exact.hpp"
+#include "regular_expression.hpp"
 #include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
@@ -175,11 +175,11 @@ std::vector<PlannedCell> filter_cells(const std::vector<PlannedCell>& cells, std
   if (negative) filter.erase(0, 1);
   std::vector<PlannedCell> result;
   try {
-    const std::regex expression(filter, std::regex::extended);
+    const RegularExpression expression(filter);
     std::ranges::copy_if(cells, std::back_inserter(result), [&](const PlannedCell& cell) {
-      return std::regex_search(cell.name, expression) != negative;
+      return expression.found_in(cell.name) != negative;
     });
-  } catch (const std::regex_error& error) {
+  } catch (const UsageError& error) {
     throw UsageError(
         fmt::format("--benchmark_filter={} is no regular expression: {}", given, error.what()));
   }

@@ -1,12 +1,14 @@
 // Adapts Google Benchmark's reporters.
 #include "bench/reporters.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace mbs {
@@ -25,11 +27,17 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string without_non_finite(const std::string& json) {
   // A string ends its line with a quotation mark, so that none can be mistaken for a number.
-  static const std::regex value(R"(: -?(NaN|Infinity)(,?)$)");
   std::istringstream stream(json);
   std::string result;
   for (std::string line; std::getline(stream, line);) {
-    result += std::regex_replace(line, value, ": null$2");
+    const std::string_view comma = line.ends_with(',') ? "," : "";
+    const std::string_view rest = std::string_view(line).substr(0, line.size() - comma.size());
+    for (const std::string_view value : {": NaN", ": -NaN", ": Infinity", ": -Infinity"}) {
+      if (!rest.ends_with(value)) continue;
+      line = fmt::format("{}: null{}", rest.substr(0, rest.size() - value.size()), comma);
+      break;
+    }
+    result += line;
     if (!stream.eof()) result += '\n';
   }
   return result;

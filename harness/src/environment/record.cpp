@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <sstream>
+#include <string_view>
 
 #include "environment/blas.hpp"
 #include "environment/build_info.hpp"
@@ -18,6 +18,7 @@
 #include "environment/machine.hpp"
 #include "printable.hpp"
 #include "registry/registry.hpp"
+#include "regular_expression.hpp"
 
 extern char** environ;
 
@@ -93,8 +94,15 @@ std::string without_home(std::string text) {
       if (!std::isalnum(static_cast<unsigned char>(next))) text.replace(at, home.size(), 1, '~');
     }
   }
-  static const std::regex other_home("/(home|Users)/[^/\\s;:]+");
-  return std::regex_replace(text, other_home, "~");
+  for (auto at = text.find('/'); at != std::string::npos; at = text.find('/', at + 1)) {
+    for (const std::string_view folder : {"/home/", "/Users/"}) {
+      const std::size_t name = at + folder.size();
+      const std::size_t end = std::min(text.find_first_of("/;: \t\n\v\f\r", name), text.size());
+      if (text.compare(at, folder.size(), folder) != 0 || end <= name) continue;
+      text.replace(at, end - at, 1, '~');
+    }
+  }
+  return text;
 }
 
 std::string command_line(const std::vector<std::string>& arguments) {
@@ -110,7 +118,9 @@ std::string command_line(const std::vector<std::string>& arguments) {
       argument = argument.substr(0, value) + shortened(argument.substr(value));
     }
     if (argument.empty() || argument.find_first_of(" \t\n'\"\\$&|;()<>*?[]") != std::string::npos) {
-      argument = fmt::format("'{}'", std::regex_replace(argument, std::regex("'"), R"('\'')"));
+      std::string quoted;
+      for (const char one : argument) quoted += one == '\'' ? R"('\'')" : std::string(1, one);
+      argument = fmt::format("'{}'", quoted);
     }
     line += (line.empty() ? "" : " ") + argument;
   }
@@ -118,14 +128,14 @@ std::string command_line(const std::vector<std::string>& arguments) {
 }
 
 std::vector<std::string> blas_files(const std::string& maps) {
-  static const std::regex name("/lib[^/]*(blas|lapack|mkl|blis|goto|atlas|flame|armpl)[^/]*$");
+  static const RegularExpression name("/lib[^/]*(blas|lapack|mkl|blis|goto|atlas|flame|armpl)[^/]*$");
   std::vector<std::string> files;
   std::istringstream stream(maps);
   for (std::string line; std::getline(stream, line);) {
     const auto slash = line.find('/');
     if (slash == std::string::npos) continue;
     const std::string path = line.substr(slash);
-    if (std::regex_search(path, name)) add_once(files, path);
+    if (name.found_in(path)) add_once(files, path);
   }
   std::ranges::sort(files);  // the kernel puts a small file into a gap now and then: the same libraries, another order
   return files;
