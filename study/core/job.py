@@ -1,4 +1,5 @@
 # One job of the workflow: the cells of a part or, on a cluster, of a column; a page; the front page.
+import contextlib
 import gc
 import importlib
 import os
@@ -71,10 +72,8 @@ def draw(studyset, part):
 
 
 def page(studyset, part):
-    from analysis.core import site  # these need modules that take a second to load
-    gc.disable()  # garbage would be looked for in all records again and again, a quarter of the time
-    site.write_part(studyset.folder, part)
-    gc.enable()
+    with _drawing() as site:
+        site.write_part(studyset.folder, part)
 
 
 def pages(studyset):
@@ -90,10 +89,19 @@ def pages(studyset):
 
 def index(studyset, part=None):
     """`part`: all that is new since it was made."""
+    with _drawing() as site:
+        site.write_index(studyset.folder, part)
+
+
+@contextlib.contextmanager
+def _drawing():
+    """The module that draws: it takes a second to load. Garbage would be looked for in all records again and again, a quarter of the time."""
     from analysis.core import site
     gc.disable()
-    site.write_index(studyset.folder, part)
-    gc.enable()
+    try:
+        yield site
+    finally:
+        gc.enable()
 
 
 def end_with(front):
