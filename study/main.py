@@ -10,7 +10,8 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished, writable)
+from study.core.studyset import (StudySet, beginning, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
+                                 writable)
 
 TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
          "new": "new", "paper": "paper.main", "sweep": "sweep"}  # in study/tools
@@ -79,7 +80,8 @@ def run(arguments):
 def _run_here(profile, only, chosen, folder, wait):
     with locks.only_one(folder), locks.only_one_study(wait):
         set_up(folder / "run.log")
-        studyset = start(folder, profile, only, chosen)
+        with beginning(folder):
+            studyset = start(folder, profile, only, chosen)
         columns = profiles.columns_of(profile, chosen)
         reopen(studyset, columns)
         need_tables(studyset)

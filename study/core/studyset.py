@@ -1,4 +1,5 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
+import contextlib
 import datetime
 import shutil
 import tempfile
@@ -134,6 +135,17 @@ def writable(folder):
         raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
     if shutil.disk_usage(folder).free < 100 * 2**20:
         raise StudyError(f"less than 100 MB free for {folder}")
+
+
+@contextlib.contextmanager
+def beginning(folder):
+    """Leaves nothing of a set that a StudyError keeps from being one: there is only what it began (need_own)."""
+    try:
+        yield
+    except StudyError:
+        if not (folder / "set.json").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def start(folder, profile, only, chosen):
