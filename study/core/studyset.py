@@ -76,19 +76,21 @@ def context_of(one):
 
 
 def listed():
-    if not (ROOT / program_of()).exists():
-        raise StudyError(f"{program_of()} is missing: build it with study/setup")
-    found = executor.run(Cell("list").settled(), None)
-    if found["status"] != "done":
-        raise StudyError(f"`{program_of()} list --json` does not work: {found['reason']}")
-    return Registry(found["output"])
+    return Registry(_said(Cell("list")))
 
 
 def describe(scene):
-    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
-    found = executor.run(Cell("describe", scene).settled(), None)
+    """`mbs describe --json`"""
+    return _said(Cell("describe", scene))
+
+
+def _said(cell):
+    """What the program says; StudyError with its own words if it refuses."""
+    if not (ROOT / program_of()).exists():
+        raise StudyError(f"{program_of()} is missing: build it with study/setup")
+    found = executor.run(cell.settled(), None)
     if found["status"] != "done":
-        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
+        raise StudyError(found["reason"].partition("mbs: ")[2] or f"`{' '.join(found['command'])}` does not work: {found['reason']}")
     return found["output"]
 
 

@@ -135,7 +135,7 @@ def test_one_row_is_no_motion(tmp_path):
 
 @pytest.mark.parametrize("arguments, words", [
     (["crank", "none.csv"], "cannot read none.csv: No such file or directory"),
-    (["missing.json"], "mbs: cannot open missing.json: No such file or directory"),
+    (["missing.json"], "cannot open missing.json: No such file or directory"),
     (["old"], "lacks something to draw"),
     (["crank", "--output", "page.txt"], "it must end with .html"),
     (["crank", "--output", "nowhere/page.html"], "there is no directory nowhere"),
@@ -159,7 +159,7 @@ def test_bad_requests_get_one_line_and_write_nothing(tmp_path, arguments, words)
 
 def test_a_program_that_is_not_there_is_named(tmp_path):
     done = view(tmp_path, "crank", program="/nowhere/mbs")
-    assert done.returncode == 2 and "/nowhere/mbs is not built yet" in done.stderr
+    assert done.returncode == 2 and "/nowhere/mbs is missing: build it with study/setup" in done.stderr
 
 
 def test_outputs_that_cannot_be_replaced_leave_no_parts(tmp_path):

@@ -1,13 +1,12 @@
-# Runs `mbs describe` and `mbs simulate` for the viewer, passing errors on; what there is to draw: the elements that the first one lists.
+# What there is to draw: the elements that `mbs describe` lists; runs `mbs simulate` for the viewer, passing errors on.
 import json
 import math
-import os
 import re
 from collections import namedtuple
 from functools import partial
 from pathlib import Path
 
-from analysis.core.files import ROOT, StudyError
+from analysis.core.files import StudyError
 from study.core import child
 from study.core.executor import program_of
 
@@ -27,17 +26,6 @@ Body = namedtuple("Body", "name points vectors")  # points and vectors: indices 
 # drawn like a rod; torsion springs are pairs of directions, each from a point to a point. outputs: names of what the author asked for; facts: on
 # its size, what the program says of it; end, s: driven motion is not known beyond; scheme: the form of the step that `mbs describe` takes.
 Scene = namedtuple("Scene", "name dimension points start rods bodies springs torsion_springs outputs facts end scheme")
-
-
-def describe(scene):
-    """The Scene of `mbs describe SCENE --json`. Raises StudyError with the program's own words."""
-    code, out, words = _run("describe", scene, "--json")
-    if code != 0:
-        raise StudyError(_failure("describe", code, words))
-    try:
-        return from_description(json.loads(out), Path(scene).name)
-    except json.JSONDecodeError as error:
-        raise StudyError(f"`mbs describe {scene} --json` gave no JSON: {error}") from error
 
 
 def from_description(description, name):
@@ -100,7 +88,7 @@ def simulate(place, scene, options, frames, csv, outputs, say):
             break
         say(f"  {words[-1].strip() if words else 'without a word'}")
     if code != 0:
-        raise StudyError(_failure("simulate", code, words) + ("" if options.step else " (choose a --step)" if code == 1 else ""))
+        raise StudyError(_failure(code, words) + ("" if options.step else " (choose a --step)" if code == 1 else ""))
     for line in words:  # warnings, and what is not accurate
         say(f"  {line}")
     return f"{options.implementation}, {scene.scheme} form, step {step:g} s"
@@ -127,15 +115,12 @@ def _affordable(run, step, duration, say):
     return fits
 
 
-def _run(command, scene, *more):
+def _run(*words):
     """(exit status, standard output, lines of standard error)"""
-    if not os.access(ROOT / program_of(), os.X_OK):  # an absolute MBS_PROGRAM stays as it is
-        raise StudyError(f"{program_of()} is not built yet: run study/setup")
-    place = os.path.abspath(scene) if os.path.isfile(scene) else scene  # a child runs elsewhere
-    ended = child.run([program_of(), command, place, *map(str, more)])
+    ended = child.run([program_of(), *map(str, words)])
     return ended.code, ended.stdout, [line for line in ended.stderr.splitlines() if line.strip()]
 
 
-def _failure(command, code, words):
+def _failure(code, words):
     end = f"signal {-code}" if code < 0 else f"status {code}"
-    return words[-1].strip() if words else f"mbs {command} ended with {end}, without a word"
+    return words[-1].strip() if words else f"mbs simulate ended with {end}, without a word"
