@@ -1,5 +1,5 @@
 # The command lines of the study: study/run, study/figures, study/store; and the way into the tools beside the parts.
-import importlib.util
+import importlib
 import os
 import shlex
 import signal
@@ -10,10 +10,9 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished, writable)
+from study.core.studyset import (StudySet, beginning, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
+                                 writable)
 
-MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
-           "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
 TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
          "new": "new", "paper": "paper.main", "sweep": "sweep"}  # in study/tools
 
@@ -22,8 +21,7 @@ def main(arguments):
     command, *rest = arguments
     child.end_on_signals()
     try:
-        if command in TOOLS:  # imported only now: they need modules that study/run may have to install
-            need_modules()
+        if command in TOOLS:  # imported only now: that takes a second
             return getattr(importlib.import_module(f"study.tools.{TOOLS[command]}"), command)(rest)
         return {"run": run, "figures": figures}[command](rest)
     except StudyError as error:
@@ -68,7 +66,6 @@ def run(arguments):
         return dry_run(profile, chosen, folder, options.only, way)
     writable(folder)
     if way:
-        need_modules()
         cluster.run(profile, options.only, chosen, folder, way, profiles.columns_of(profile, chosen))
     else:
         _run_here(profile, options.only, chosen, folder, options.wait)
@@ -83,8 +80,8 @@ def run(arguments):
 def _run_here(profile, only, chosen, folder, wait):
     with locks.only_one(folder), locks.only_one_study(wait):
         set_up(folder / "run.log")
-        need_modules()
-        studyset = start(folder, profile, only, chosen)
+        with beginning(folder):
+            studyset = start(folder, profile, only, chosen)
         columns = profiles.columns_of(profile, chosen)
         reopen(studyset, columns)
         need_tables(studyset)
@@ -97,7 +94,6 @@ def figures(arguments):
     parser = Parser(prog="study/figures", description="Draws every table, figure and page of a set again, from its records.")
     parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
     given = parser.parse_args(arguments).set
-    need_modules()
     folder = given or newest(ROOT / "results")
     studyset = opened(folder)
     writable(folder)
@@ -139,12 +135,6 @@ def dry_run(profile, chosen, folder, only, way):
         print(f"  {part:10} {'at most ' + duration(profiles.planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
     print(f"at most {duration(profiles.planned(left))}, besides set-up and build")
     return 0
-
-
-def need_modules():
-    for module, package in MODULES.items():
-        if importlib.util.find_spec(module) is None:
-            raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run study/setup, or apt-get install {package}")
 
 
 if __name__ == "__main__":

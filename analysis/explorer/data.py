@@ -2,6 +2,8 @@
 # and time; the rule that predicts.
 import re
 from collections import namedtuple
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy
 import pandas
@@ -20,10 +22,22 @@ from analysis.map.timed import AFTER
 DIGITS = 7  # of samples
 
 
-class Contest(namedtuple("Contest", "part scene form n fill rows able lost failed look rank beyond", defaults=(timing.NO_VARIANCE,))):
-    """A scene and form of the step that contenders were timed on. `fill`: in %; `rows`: those of timing.processes that count; `able`: who
-    may be ranked; `lost`: {name: (status, reason)} of the others; `failed`: those of them of whom nothing is known; `look`:
-    {name: µs a step} of a first look; `rank`: names → timing.Ranking, as the part itself does it; `beyond`: of timing.Paired."""
+@dataclass(frozen=True)
+class Contest:
+    """A scene and form of the step that contenders were timed on."""
+    part: str
+    scene: str
+    form: str
+    n: float
+    fill: float              # %
+    rows: pandas.DataFrame   # those of timing.processes that count
+    able: list               # who may be ranked
+    lost: dict               # {name: (status, reason)} of the others
+    failed: list             # those of them of whom nothing is known
+    look: dict               # {name: µs a step} of a first look
+    rank: Callable           # names → timing.Ranking, as the part itself does it
+    beyond: tuple = timing.NO_VARIANCE  # of timing.Paired
+
     family = property(lambda self: family_of(self.scene))
 
 

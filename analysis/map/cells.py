@@ -1,16 +1,24 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
 import math
-from collections import namedtuple
+from dataclasses import dataclass
 
 import pandas
 
+from analysis.core import timing
 from analysis.map import carry
 from analysis.map.timed import layers
 
 
-class Cell(namedtuple("Cell", "scene variables fill_asked fill_percent ranking excluded failed")):
-    """One scene as a map shows it. `fill_asked`: share; None: the mechanism's own fill; `fill_percent`: as measured; `ranking`: a
-    timing.Ranking; None if nobody could be timed there."""
+@dataclass(frozen=True)
+class Cell:
+    """One scene as a map shows it."""
+    scene: str
+    variables: int
+    fill_asked: float | None        # share; None: the mechanism's own
+    fill_percent: float             # as measured
+    ranking: timing.Ranking | None  # None: nobody could be timed there
+    excluded: tuple                 # names of those who were too slow
+    failed: tuple
 
     # Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten.
     decided = property(lambda self: bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed)))

@@ -10,6 +10,7 @@
 #include "describe/describe.hpp"
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
+#include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
@@ -141,6 +142,11 @@ TEST(Warnings, TellOfStepsTooLongForSprings) {
   EXPECT_NEAR(shortest_period(Model(std::move(data))), 2 * std::numbers::pi, 1e-14);
 }
 
+PenaltyWindow window_of(const Model& model, const StepSettings& settings) {
+  return penalty_window(model, find_structure(model),
+                        smallest_constraint_eigenvalue(model, model.initial_position()), settings);
+}
+
 // The window against what was measured over 5 s.
 TEST(PenaltyWindow, IsWhereRunsAreGood) {
   const struct {
@@ -151,7 +157,7 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
                {40, 6.25e-4, 1e3, 1e5}, {10, 6.25e-4, 300, 1.5e5}};
   for (const auto& [loops, step, good_from, good_to] : cases) {
     const Model model(four_bar(loops));
-    const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = step});
+    const PenaltyWindow window = window_of(model, {.step = step});
     const double per_beta = 4.0 / (step * step);
     EXPECT_LE(window.lower, window.upper) << loops << ", " << step;
     for (const auto& [bound, measured] :
@@ -171,8 +177,8 @@ TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
                {10, 2.5e-3, 1e2, 1e4}, {20, 2.5e-3, 1e2, 1e4}, {20, 1.25e-3, 3e3, 1e4}};
   for (const auto& [loops, step, good_from, good_to] : cases) {
     const Model model(four_bar(loops));
-    const PenaltyWindow window = penalty_window(
-        model, find_structure(model), {.step = step, .precision = Precision::single_precision});
+    const PenaltyWindow window =
+        window_of(model, {.step = step, .precision = Precision::single_precision});
     const double per_beta = 4.0 / (step * step);
     EXPECT_GT(window.upper, kClosedBySlowestInSingle * window.lower) << loops << ", " << step;
     EXPECT_LT(std::abs(std::log10(window.lower / (per_beta * good_from))), 1.0)
@@ -185,7 +191,7 @@ TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
                                     std::pair(200, 1.25e-3)}) {
     const Model model(four_bar(loops));
     const StepSettings settings{.step = step, .precision = Precision::single_precision};
-    const PenaltyWindow window = penalty_window(model, find_structure(model), settings);
+    const PenaltyWindow window = window_of(model, settings);
     EXPECT_LT(window.upper, kClosedBySlowestInSingle * window.lower) << loops << ", " << step;
     const std::string warning = penalty_warning(window, settings, PenaltyFrom::rule);
     EXPECT_NE(warning.find("saddle-point, --precision double"), std::string::npos) << warning;
@@ -194,7 +200,7 @@ TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
 
 TEST(PenaltyWindow, IsEmptyWhereNoPenaltyWorks) {
   const Model model(four_bar(1000));
-  const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = 1e-4});
+  const PenaltyWindow window = window_of(model, {.step = 1e-4});
   EXPECT_GT(window.lower, window.upper);
   EXPECT_TRUE(window.cancellation);
   EXPECT_TRUE(window.slowest_mode);

@@ -8,11 +8,11 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "elimination_order.hpp"
+#include "mbs/simulation.hpp"
 
 namespace mbs::csc_cholmod {
 namespace {
@@ -118,8 +118,7 @@ using Factor = std::unique_ptr<cholmod_factor, FreeFactor>;
 Factor analyze(cholmod_sparse& matrix, Common& common) {
   Factor factor(cholmod_analyze(&matrix, &common), {&common});
   if (factor != nullptr) return factor;
-  throw std::runtime_error("CHOLMOD cannot analyse this matrix, status " +
-                           std::to_string(common.status));
+  throw Unsupported("CHOLMOD cannot analyse this matrix, status " + std::to_string(common.status));
 }
 
 std::vector<double> identity_values(const HalfPattern& pattern) {
@@ -194,7 +193,7 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method) 
   std::iota(place.begin(), place.end(), 0);
   if (!supernodal && method.tuning == Tuning::own) {
     // The pattern of L comes with its values.
-    if (!cholmod_factorize(&matrix, factor.get(), &common)) throw std::runtime_error(kNoMemory);
+    if (!cholmod_factorize(&matrix, factor.get(), &common)) throw Unsupported(kNoMemory);
     place = outside_in_order(pattern.size(), below_diagonal(*factor));
   }
   std::vector<int> number(pattern.size());
@@ -223,7 +222,7 @@ struct Solver::Cholmod {
     // gets its exact size (by grow2), with 1 only its diagonal, and would move as it grows.
     if (!cholmod_change_factor(CHOLMOD_REAL, supernodal ? 1 : common.final_ll, supernodal, 0, 1,
                                factor.get(), &common)) {
-      throw std::runtime_error(kNoMemory);
+      throw Unsupported(kNoMemory);
     }
     find_diagonal();
     split_diagonal(negative);

@@ -43,7 +43,7 @@ class Solver {
  public:
   /// Analyses `pattern`, the preferred half of its factorization. `pattern` and `values` (which may
   /// change) must outlive this. `negative` lists the unknowns of the negative definite block.
-  /// Throws std::runtime_error if CHOLMOD cannot hold the factor.
+  /// Throws Unsupported if CHOLMOD cannot hold the factor.
   Solver(Method method, const HalfPattern& pattern, const double* values,
          const std::vector<int>& negative = {});
   ~Solver();

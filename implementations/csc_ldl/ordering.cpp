@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <string>
+
+#include "mbs/simulation.hpp"
 
 namespace mbs::csc_ldl {
 namespace {
@@ -36,7 +37,9 @@ std::vector<int> amd(const Lists& adjacent) {
   }
   const int status = amd_order(static_cast<int>(adjacent.size()), begin.data(), index.data(),
                                order.data(), nullptr, nullptr);
-  if (status != AMD_OK) throw std::runtime_error("AMD failed: status " + std::to_string(status));
+  if (status != AMD_OK) {
+    throw Unsupported("AMD cannot order the matrix, status " + std::to_string(status));
+  }
   return order;
 }
 

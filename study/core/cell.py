@@ -50,6 +50,14 @@ def by_environment(contenders):
     return {name: tuple(group) for name, group in gather((one.environment, one) for one in contenders).items()}
 
 
+def scene_name(text):
+    """A scene as programs that run in ROOT find it; a file in the repository without the machine's path."""
+    if not Path(text).is_file():
+        return text
+    path = Path(text).resolve()
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
 @dataclass(frozen=True)
 class Cell:
     kind: str               # subcommand of the program: simulate, check, bench, describe, limit; "" if it has none

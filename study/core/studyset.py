@@ -1,4 +1,5 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
+import contextlib
 import datetime
 import shutil
 import tempfile
@@ -75,19 +76,21 @@ def context_of(one):
 
 
 def listed():
-    if not (ROOT / program_of()).exists():
-        raise StudyError(f"{program_of()} is missing: build it with study/setup")
-    found = executor.run(Cell("list").settled(), None)
-    if found["status"] != "done":
-        raise StudyError(f"`{program_of()} list --json` does not work: {found['reason']}")
-    return Registry(found["output"])
+    return Registry(_said(Cell("list")))
 
 
 def describe(scene):
-    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
-    found = executor.run(Cell("describe", scene).settled(), None)
+    """`mbs describe --json`"""
+    return _said(Cell("describe", scene))
+
+
+def _said(cell):
+    """What the program says; StudyError with its own words if it refuses."""
+    if not (ROOT / program_of()).exists():
+        raise StudyError(f"{program_of()} is missing: build it with study/setup")
+    found = executor.run(cell.settled(), None)
     if found["status"] != "done":
-        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
+        raise StudyError(found["reason"].partition("mbs: ")[2] or f"`{' '.join(found['command'])}` does not work: {found['reason']}")
     return found["output"]
 
 
@@ -134,6 +137,17 @@ def writable(folder):
         raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
     if shutil.disk_usage(folder).free < 100 * 2**20:
         raise StudyError(f"less than 100 MB free for {folder}")
+
+
+@contextlib.contextmanager
+def beginning(folder):
+    """Leaves nothing of a set that a StudyError keeps from being one: there is only what it began (need_own)."""
+    try:
+        yield
+    except StudyError:
+        if not (folder / "set.json").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def start(folder, profile, only, chosen):

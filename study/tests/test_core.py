@@ -536,6 +536,15 @@ def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
+@pytest.mark.parametrize("command", [["run", "--profile", "smoke"], ["against", "HEAD"]])
+def test_of_a_set_that_does_not_begin_nothing_is_left(tmp_path, command):
+    command = [*command, "--only", "nope", "--wait", "--results"]
+    done = study(*command, tmp_path / "new", program=FAKE)
+    assert done.returncode == 2 and "unknown implementation 'nope'" in done.stderr and not (tmp_path / "new").exists(), done.stderr
+    write_json(tmp_path / "set.json", FACTS)
+    assert study(*command, tmp_path, program=FAKE).returncode == 2 and (tmp_path / "set.json").exists()
+
+
 def test_the_workflow_runs_in_a_folder_of_any_name(tmp_path):
     folder = tmp_path / "a: b"
     write_json(folder / ".parts.json", ["stability"])

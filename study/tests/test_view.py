@@ -6,6 +6,7 @@ import os
 import re
 import struct
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy
@@ -135,7 +136,7 @@ def test_one_row_is_no_motion(tmp_path):
 
 @pytest.mark.parametrize("arguments, words", [
     (["crank", "none.csv"], "cannot read none.csv: No such file or directory"),
-    (["missing.json"], "mbs: cannot open missing.json: No such file or directory"),
+    (["missing.json"], "cannot open missing.json: No such file or directory"),
     (["old"], "lacks something to draw"),
     (["crank", "--output", "page.txt"], "it must end with .html"),
     (["crank", "--output", "nowhere/page.html"], "there is no directory nowhere"),
@@ -159,7 +160,7 @@ def test_bad_requests_get_one_line_and_write_nothing(tmp_path, arguments, words)
 
 def test_a_program_that_is_not_there_is_named(tmp_path):
     done = view(tmp_path, "crank", program="/nowhere/mbs")
-    assert done.returncode == 2 and "/nowhere/mbs is not built yet" in done.stderr
+    assert done.returncode == 2 and "/nowhere/mbs is missing: build it with study/setup" in done.stderr
 
 
 def test_outputs_that_cannot_be_replaced_leave_no_parts(tmp_path):
@@ -206,7 +207,7 @@ def test_driven_motion_is_shown_as_long_as_it_is_known(tmp_path):
 def test_no_name_in_a_scene_can_leave_its_element(tmp_path):
     description = {"dimension": 2, "drivers_end": None, "elements": moving_mbs.elements("crank")}
     scene = from_description(description, "</title><script>alert(1)</script>")
-    scene = scene._replace(points=[(name.replace("O", "</script><b>"), kind) for name, kind in scene.points])
+    scene = replace(scene, points=[(name.replace("O", "</script><b>"), kind) for name, kind in scene.points])
     motion = trajectory.read(csv_of(tmp_path, "crank"), scene_of("crank"), 100)
     from study.tools.viewer.page import render
     text = render(scene, motion, "<i>", [0, 1, 0])
@@ -270,7 +271,7 @@ def test_faces_are_those_of_a_solid_and_look_outward(tmp_path):
     corners = numpy.array([[x, y, z] for x in (0, 1) for y in (0, 2) for z in (0, 3)], float)
     count = len(scene.points)
     motion = motion._replace(positions=numpy.concatenate([motion.positions, numpy.tile(corners, (len(motion.times), 1, 1))], axis=1))
-    scene = scene._replace(bodies=[program.Body(name, [count + k for k in corners_of], [])
+    scene = replace(scene, bodies=[program.Body(name, [count + k for k in corners_of], [])
                                    for name, corners_of in (("box", range(8)), ("plate", (0, 1, 2, 3)), ("bar", (0, 7)))])
     box, plate, bar = page.faces(scene, motion)
     assert len(box) == 12 and plate == bar == []

@@ -2,7 +2,7 @@
 # fresh processes: what the set has of the others is never paired with new samples. README.md has what it leaves.
 import datetime
 import shutil
-from collections import Counter, namedtuple
+from collections import Counter
 from dataclasses import dataclass
 
 from analysis.core import schema, timing
@@ -81,9 +81,20 @@ class _Present(StudySet):
         return {"context": next(iter(self.present.values()))}
 
 
-class Contest(namedtuple("Contest", "part scene scheme variables led form stretch steps start times newcomers")):
-    """A scene and form of the step that somebody leads in the set. `led`: rows with layer, winner and second; `form`, `stretch`: words of
-    the command line, as the set's records have them; `steps`, `start`: of the stretch; `times`: µs a step, for the number of samples only."""
+@dataclass(frozen=True)
+class Contest:
+    """A scene and form of the step that somebody leads in the set."""
+    part: str
+    scene: str
+    scheme: str
+    variables: float
+    led: list        # rows with layer, winner and second
+    form: tuple      # words of the command line, as the set's records have them
+    stretch: tuple   # the same, of what is timed ...
+    steps: float     # ... and how long that is
+    start: float     # s
+    times: dict      # {name: µs a step}, for the number of samples only
+    newcomers: list  # names
 
     def rivals(self, there):
         """The leader and the runner-up of the libraries, and the leader of all; those that are still there."""

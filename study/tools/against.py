@@ -13,7 +13,7 @@ from study.core.cell import Cell, by_environment
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import describe, listed, need_own, select, writable
+from study.core.studyset import beginning, describe, listed, need_own, select, writable
 from study.tools import shelf
 
 SECONDS = 120.0  # of a process
@@ -39,9 +39,10 @@ def against(arguments):
     with locks.only_one(folder), locks.only_one_study(options.wait):
         set_up(folder / "run.log")
         known = listed()
-        names = select(known, options.only)
-        for scene in options.scenes:
-            describe(scene)  # StudyError before the other revision is built for nothing
+        with beginning(folder):  # before the other revision is built for nothing
+            names = select(known, options.only)
+            for scene in options.scenes:
+                describe(scene)
         build = _build(revision, folder / "run.log")
         table = _measure(folder, options, known, names, revision, build)
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))

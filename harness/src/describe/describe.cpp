@@ -19,8 +19,10 @@
 #include "model_math/kinematics.hpp"
 #include "registry/setting_names.hpp"
 #include "run/driver_end.hpp"
+#include "run/initial_state.hpp"
 #include "run/judge.hpp"
 #include "run/rounding.hpp"
+#include "run/settings.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -75,11 +77,11 @@ void add_structure(json& result, const Model& model, const Structure& structure)
                               {"constraints", names_of(model, structure.singular_rows)}};
 }
 
-json penalty_json(const PenaltyWindow& window, double step) {
-  return {{"step", step},
+json penalty_json(const PenaltyWindow& window, const StepSettings& settings) {
+  return {{"step", settings.step},
           {"lower", window.lower},
           {"upper", window.upper},
-          {"automatic", window.automatic},
+          {"automatic", settings.penalty},
           {"lower_from", window.slowest_mode ? "slowest mode" : "singular positions"},
           {"upper_from", window.cancellation ? "cancellation" : "nonlinearity"}};
 }
@@ -97,7 +99,7 @@ std::string rounding_warning(const Model& model, const StepSettings& settings) {
 }
 
 /// The window, and what is likely to go wrong with the automatic factor and this step.
-void add_settings(json& result, const Model& model, const Structure& structure,
+void add_settings(json& result, const Model& model, const Structure& structure, double smallest,
                   StepSettings settings) {
   result["precision"] = name_of(settings.precision);
   result["penalty_window"] = nullptr;
@@ -105,9 +107,9 @@ void add_settings(json& result, const Model& model, const Structure& structure,
   result["warnings"] = json::array();
   std::vector<std::string> warnings{period_warning(model, settings.step)};
   if (model.constraints() > 0) {
-    const PenaltyWindow window = penalty_window(model, structure, settings);
-    result["penalty_window"] = penalty_json(window, settings.step);
-    settings.penalty = window.automatic;
+    settings.penalty = automatic_penalty(model, settings, smallest);
+    const PenaltyWindow window = penalty_window(model, structure, smallest, settings);
+    result["penalty_window"] = penalty_json(window, settings);
     warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
     if (warnings.back().empty()) warnings.push_back(rounding_warning(model, settings));
     const bool is_open = warnings.back().empty();
@@ -126,9 +128,10 @@ void add_settings(json& result, const Model& model, const Structure& structure,
 constexpr long kMostForPasses = 1'000'000;  // non-zeros of L that passes are still estimated with
 
 /// Passes a step in both forms; where their estimate is too much work, 2.
-json passes_json(const Scene& scene, const StepSettings& settings, const json& saddle_point) {
+json passes_json(const Scene& scene, double smallest, const StepSettings& settings,
+                 const json& saddle_point) {
   const bool few = !saddle_point.is_null() && saddle_point["factor_nonzeros"] <= kMostForPasses;
-  const Passes found = few ? expected_passes(scene, settings) : Passes{};
+  const Passes found = few ? expected_passes(scene, smallest, settings) : Passes{};
   return {{"penalty", found.penalty}, {"saddle-point", found.saddle_point}};
 }
 
@@ -155,6 +158,7 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
   const double n = model.variables();
   const double m = model.constraints();
   const Structure structure = find_structure(model);
+  const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   const auto jacobian_entries = jacobian(model, 0.0, model.initial_position()).size();
   json result = {
       {"scene", scene.name},
@@ -174,9 +178,9 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
                                            owned_coordinates(model));
   add_points(result, scene);
   add_structure(result, model, structure);
-  add_settings(result, model, structure, settings);
+  add_settings(result, model, structure, smallest, settings);
   result["passes"] =
-      passes_json(scene, settings, result["elimination"]["orderings"]["saddle-point"]);
+      passes_json(scene, smallest, settings, result["elimination"]["orderings"]["saddle-point"]);
   result["features"] = features_json(result);
   return result;
 }

@@ -60,7 +60,7 @@ std::vector<Rate> rates(const std::vector<double>& first, const std::vector<doub
 
 }  // namespace
 
-Passes expected_passes(const Scene& scene, const StepSettings& settings) {
+Passes expected_passes(const Scene& scene, double smallest, const StepSettings& settings) {
   const Model& model = scene.model;
   const double step = settings.step, apart = kApart * step;
   if (driver_end(model) < 2 * apart) return {};
@@ -76,7 +76,7 @@ Passes expected_passes(const Scene& scene, const StepSettings& settings) {
   penalty.scheme = Scheme::penalty;
   saddle_point.scheme = Scheme::saddle_point;
   for (StepSettings* form : {&penalty, &saddle_point}) {
-    form->penalty = automatic_penalty(model, *form);
+    form->penalty = automatic_penalty(model, *form, smallest);
     form->tolerance = automatic_tolerance(model, *form);
   }
   int more_of_penalty = 0, more_of_saddle_point = 0;  // steps with a second pass

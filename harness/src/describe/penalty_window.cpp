@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "model_math/turning.hpp"
-#include "run/initial_state.hpp"
 #include "run/settings.hpp"
 
 namespace mbs {
@@ -32,7 +31,7 @@ struct Bounds {
 
 }  // namespace
 
-PenaltyWindow penalty_window(const Model& model, const Structure& structure,
+PenaltyWindow penalty_window(const Model& model, const Structure& structure, double smallest,
                              const StepSettings& settings) {
   PenaltyWindow window;
   const double step = settings.step;
@@ -42,9 +41,8 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
   window.rate = fastest.rate > 0.0 ? fastest.rate : 2e-3 * std::numbers::pi / step;
   const double turn = window.rate * step;  // rad a step
   const double row = least_constraint_diagonal(model);
-  double smallest = std::numeric_limits<double>::infinity();  // at a singular start it says nothing
-  if (!structure.singular.value_or(true)) {
-    smallest = smallest_constraint_eigenvalue(model, model.initial_position());
+  if (structure.singular.value_or(true)) {
+    smallest = std::numeric_limits<double>::infinity();  // it says nothing there
   }
   const double mean = mean_constraint_eigenvalue(model);
   const double noise = unit_roundoff(Precision::double_precision) * rounding_length(model);
@@ -72,7 +70,6 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
   window.lower = per_beta * bounds.lower();
   window.upper = per_beta * bounds.upper();
   window.stable = per_beta / smallest;
-  window.automatic = automatic_penalty(model, {.step = step, .precision = settings.precision});
   return window;
 }
 

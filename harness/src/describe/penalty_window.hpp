@@ -14,7 +14,6 @@ namespace mbs {
 struct PenaltyWindow {
   double lower = 0.0;         ///< alpha; below it the multipliers do not converge
   double upper = 0.0;         ///< alpha; above it errors grow in proportion
-  double automatic = 0.0;     ///< what `--penalty auto` takes
   double stable = 0.0;        ///< alpha; below it a step of one pass makes the slowest mode grow
   double widest = 0.0;        ///< upper / lower at the step where that is most
   double rate = 0.0;          ///< omega, the fastest rate of turning expected, 1/s
@@ -23,8 +22,8 @@ struct PenaltyWindow {
 };
 
 /// For the step and precision of `settings`; mixed precision has double's. The model must have a
-/// constraint that is not redundant.
-PenaltyWindow penalty_window(const Model& model, const Structure& structure,
+/// constraint that is not redundant. `smallest`: smallest_constraint_eigenvalue() at the start.
+PenaltyWindow penalty_window(const Model& model, const Structure& structure, double smallest,
                              const StepSettings& settings);
 
 }  // namespace mbs

@@ -9,6 +9,7 @@
 
 #include "model_math/kinematics.hpp"
 #include "model_math/spring_diagonal.hpp"
+#include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"
 
@@ -124,7 +125,9 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
     const Structure structure = find_structure(model);
     add(start_warning(model, structure));
     if (settings.scheme == Scheme::penalty) {
-      const PenaltyWindow window = penalty_window(model, structure, settings);
+      const PenaltyWindow window = penalty_window(
+          model, structure, smallest_constraint_eigenvalue(model, model.initial_position()),
+          settings);
       add(penalty_warning(window, settings, from));
     }
   }

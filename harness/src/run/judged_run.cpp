@@ -1,4 +1,4 @@
-// Judgement after each step; where it finds the solution lost, the first step that was.
+// Judgement after each step.
 #include "run/judged_run.hpp"
 
 #include <fmt/format.h>
@@ -16,18 +16,8 @@
 namespace mbs {
 namespace {
 
-using Clock = SampledTime::Clock;
-
-double judged_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 bool has_high_order(Scheme scheme) {
   return scheme == Scheme::rattle4 || scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
-}
-
-bool is_trapezoidal(Scheme scheme) {
-  return scheme == Scheme::penalty || scheme == Scheme::saddle_point;
 }
 
 }  // namespace
@@ -128,13 +118,13 @@ void JudgedRun::judge_present() {
   std::string lost = judge_.judge(time(step), state_);
   has_figures_ = true;
   if (!lost.empty()) {
-    const auto begin = Clock::now();
+    const auto begin = SampledTime::Clock::now();
     if (!locate_loss(lost)) {
       // Where another simulation did the steps again, this state itself is still to be judged.
       lost = judge_.judge(time(step), state_);
       if (!lost.empty()) lose(judge_, lost, step);
     }
-    aside_ = judged_since(begin);
+    aside_ = SampledTime::since(begin);
   }
   if (is_over_) return;
   if (adds_local_errors_) add_local_errors();
@@ -188,22 +178,6 @@ long JudgedRun::looked_after(const State& present) const {
   return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
 }
 
-/// The step at which the motion found to have jumped at `step` did so, by doing those since the
-/// last sound look again; `step` if that does not show it.
-long JudgedRun::first_across(long step) {
-  const auto sound = std::lround(watch_.anchor_time() / settings_.step.step);
-  if (sound + 1 >= step) return step;
-  State state = watch_.anchor();
-  Simulation& simulation = access_.again();
-  simulation.set_state(state);
-  for (long i = sound + 1; i < step; ++i) {
-    if (simulation.step().status == StepStatus::factorization_failed) return step;
-    simulation.get_state(state);
-    if (watch_.is_across(time(i), state)) return i;
-  }
-  return step;
-}
-
 /// About every 256 steps, and by one in four of those that are judged: it takes as long as all
 /// else.
 void JudgedRun::balance_energy() {
@@ -232,67 +206,6 @@ void JudgedRun::add_local_errors() {
   judge_.add_time(static_cast<double>(steps) * step, speed);
   fastest_ = std::max(fastest_, speed);
   add_speed_error();
-}
-
-/// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
-/// steps. Not by those that cannot have left enough.
-void JudgedRun::add_speed_error() {
-  constexpr long kMost = 1024, kTimes = 16;
-  const long step = summary_.steps, since = step - done_again_;
-  if (!is_trapezoidal(settings_.step.scheme)) return;
-  if (step != steps_ && since < std::min(kMost, steps_ / kTimes - interval_)) return;
-  // Steps that were not projected as the others are not comparable.
-  if (step % settings_.step.projections_every != 0) return;
-  // Even if all steps left so much: the sum grows with the square of time.
-  const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
-                            (static_cast<double>(steps_) * time(steps_));
-  if (summary_.steps_at_limit == 0 &&
-      most_left(*access_.model, settings_.step, fastest_) < negligible) {
-    done_again_ = step;
-    return;
-  }
-  const auto begin = Clock::now();
-  if (!again_) {
-    again_.emplace(access_.create, *access_.model, settings_.step,
-                   static_cast<double>(summary_.passes) / static_cast<double>(step));
-  }
-  const auto ready = Clock::now();  // its set-up is no more judging than that of the run is a step
-  local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
-                          settings_.step.step, since,
-                          balance_ ? balance_->braked(time(step), state_) : 0.0);
-  done_again_ = step;
-  doing_again_ += judged_since(ready);
-  aside_ += judged_since(begin);
-}
-
-/// The solution was found lost, for `reason`. Does the steps since the last good one again and
-/// judges each, so that the summary has the first that was lost. False if none of them was: with
-/// more states the judge knows better what its figures are small against. Its judgement counts
-/// then.
-bool JudgedRun::locate_loss(const std::string& reason) {
-  const long step = summary_.steps;
-  if (good_.step + 1 == step) {
-    lose(judge_, reason, step);
-    return true;
-  }
-  Judge judge = judge_;
-  judge.take_back(good_.figures);
-  State state = good_.state;
-  Simulation& simulation = access_.again();
-  simulation.set_state(state);
-  for (long i = good_.step + 1; i <= step; ++i) {
-    if (simulation.step().status == StepStatus::factorization_failed) {
-      lose(judge_, reason, step);
-      return true;
-    }
-    simulation.get_state(state);
-    const std::string first = judge.judge(time(i), state);
-    if (first.empty()) continue;
-    lose(judge, first, i);
-    return true;
-  }
-  judge_ = judge;
-  return false;
 }
 
 std::string JudgedRun::hint() const {

@@ -27,8 +27,12 @@ class SampledTime {
   }
   /// `aside` (s) of it was something else.
   void end(double aside = 0.0) {
-    if (is_timed_) add(std::chrono::duration<double>(Clock::now() - begin_).count() - aside);
+    if (is_timed_) add(since(begin_) - aside);
     ++laps_;
+  }
+  /// s
+  [[nodiscard]] static double since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
   }
   /// Of all laps so far, s.
   [[nodiscard]] double total() const;

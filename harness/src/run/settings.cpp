@@ -62,13 +62,12 @@ double rounding_noise(const Model& model, const StepSettings& settings, double s
 }
 
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
-double automatic_beta(const Model& model, const StepSettings& settings) {
+double automatic_beta(const Model& model, const StepSettings& settings, double smallest) {
   // The coarse tolerance of single precision leaves the multipliers one pass a step, which needs
   // more beta from longer steps on.
   const bool single = settings.precision == Precision::single_precision;
   const double at = single ? 2 * kMeasuredTurn : kMeasuredTurn;
   const double mean = mean_constraint_eigenvalue(model);
-  const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   const Turning fastest = fastest_turning(model);
   double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
   constexpr double kQuiet = 3e-9;  // of the length
@@ -99,19 +98,25 @@ double least_constraint_diagonal(const Model& model) {
   return least;
 }
 
-double automatic_penalty(const Model& model, const StepSettings& settings) {
+double automatic_penalty(const Model& model, const StepSettings& settings,
+                         std::optional<double> smallest) {
   if (model.constraints() == 0) return 1.0;
   const double per_beta = 4 / (settings.step * settings.step);
-  if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings);
+  const auto slowest = [&] {
+    return smallest ? *smallest : smallest_constraint_eigenvalue(model, model.initial_position());
+  };
+  if (settings.scheme == Scheme::penalty) {
+    return per_beta * automatic_beta(model, settings, slowest());
+  }
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme == Scheme::multistep6) return per_beta * 1e7 / mean;
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
   const double ratio = fastest_turning(model).rate * settings.step / kMeasuredTurn;
-  const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
-  const double measured = std::clamp(15 / (smallest * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
+  const double s_min = slowest();
+  const double measured = std::clamp(15 / (s_min * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
   constexpr double kMost = 1e14;  // its inverse is a hundred times what pivots round by
-  const double stable = kStable / smallest;
+  const double stable = kStable / s_min;
   return per_beta * (stable <= kMost / mean ? std::max(measured, stable) : measured);
 }
 

@@ -1,6 +1,7 @@
 // Settings that the harness chooses from the model.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ namespace mbs {
 /// since eps must be above their rounding. RATTLE: (4 / dt^2) 2e4 / s_mean: a smaller eps does not
 /// survive the poles of the multipliers at singular positions; the multistep method, which does not
 /// pass them anyway, 1e7, so that two passes are enough. For the step, scheme and precision
-/// of `settings`.
-double automatic_penalty(const Model& model, const StepSettings& settings);
+/// of `settings`; `smallest`: s_min, where it is known already.
+double automatic_penalty(const Model& model, const StepSettings& settings,
+                         std::optional<double> smallest = std::nullopt);
 
 /// Diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, at the start (m), m^2/kg.
 std::vector<double> constraint_diagonal(const Model& model);

@@ -7,6 +7,7 @@ from functools import partial
 
 from analysis.core.files import ROOT, StudyError, digest, write_json
 from study.core import locks
+from study.core.cell import scene_name
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
 from study.core.studyset import describe, listed, need_own, select, writable
@@ -15,7 +16,7 @@ from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
 from study.tools.advise.evidence import BEGUN
 from study.tools.advise.probe import catalogue
-from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
+from study.tools.advise.runner import REPEATS, Runner, folder_of
 from study.tools.advise.validate import questions, validate
 from study.tools.shelf import open_shelf
 

@@ -6,7 +6,7 @@ import shlex
 import time
 from pathlib import Path
 
-from analysis.core.files import ROOT, digest
+from analysis.core.files import digest
 from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
@@ -17,14 +17,6 @@ EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact
 VALUES, JUDGED = 2e5, 100
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 QUICK = 200  # steps of a run for its time
-
-
-def scene_name(text):
-    """A scene as programs that run in ROOT find it; a file in the repository without the machine's path."""
-    if not Path(text).is_file():
-        return text
-    path = Path(text).resolve()
-    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
 def folder_of(scene, *more):

@@ -6,12 +6,13 @@ from argparse import Namespace
 from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED
 from study.core import locks
+from study.core.cell import scene_name
 from study.core.setting import Setting, read_settings
 from study.core.studyset import describe, listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
 from study.tools.advise.probe import catalogue, fits, probe, serving
-from study.tools.advise.runner import EXACT, folder_of, scene_name
+from study.tools.advise.runner import EXACT, folder_of
 from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"

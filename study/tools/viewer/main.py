@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy
 
 from analysis.core.files import StudyError, write
+from study.core.cell import scene_name
 from study.core.options import Parser, positive
+from study.core.studyset import describe
 from study.tools.viewer import page, program, trajectory
 
 FRAMES = 600  # in a page, at most
@@ -24,7 +26,8 @@ PICTURE = re.compile(r'id="sheet" src="data:image/png;base64,([^"]+)"')  # what 
 
 def view(arguments):
     options = _options(arguments)
-    scene = program.describe(options.scene)
+    place = scene_name(options.scene)
+    scene = program.from_description(describe(place), Path(options.scene).name)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
     frames = max(2, min(FRAMES, VALUES_AT_MOST // (len(scene.points) * scene.dimension)))
@@ -34,7 +37,7 @@ def view(arguments):
     else:
         with tempfile.TemporaryDirectory() as folder:
             csv, outputs = Path(folder) / "trajectory.csv", Path(folder) / "outputs.csv" if scene.outputs else None
-            note = program.simulate(options.scene, scene, options, frames, csv, outputs, print)
+            note = program.simulate(place, scene, options, frames, csv, outputs, print)
             motion = trajectory.read(csv, scene, frames, outputs)
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")

@@ -1,17 +1,16 @@
-# Runs `mbs describe` and `mbs simulate` for the viewer, passing errors on; what there is to draw: the elements that the first one lists.
+# What there is to draw: the elements that `mbs describe` lists; runs `mbs simulate` for the viewer, passing errors on.
 import json
 import math
-import os
 import re
 from collections import namedtuple
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from analysis.core.files import ROOT, StudyError
+from analysis.core.files import StudyError
 from study.core import child
 from study.core.executor import program_of
 
-KINDS = ("free", "fixed", "driven", "vector", "marker")
 HIDDEN = "hidden"  # a point that the scene does not name and no element needs: not drawn
 NO_PLACES = ("vector", HIDDEN)
 COMMENTS = re.compile(r'("(?:[^"\\]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)  # and texts, which stay
@@ -23,21 +22,22 @@ STEPS_OF_A_RUN = 1e8     # at most: mbs refuses more
 
 
 Body = namedtuple("Body", "name points vectors")  # points and vectors: indices into Scene.points
-# points: (name, kind); start: their positions at t = 0, one row each, m. Rods and springs are pairs of points, and so is a distance, which is
-# drawn like a rod; torsion springs are pairs of directions, each from a point to a point. outputs: names of what the author asked for; facts: on
-# its size, what the program says of it; end, s: driven motion is not known beyond; scheme: the form of the step that `mbs describe` takes.
-Scene = namedtuple("Scene", "name dimension points start rods bodies springs torsion_springs outputs facts end scheme")
 
 
-def describe(scene):
-    """The Scene of `mbs describe SCENE --json`. Raises StudyError with the program's own words."""
-    code, out, words = _run("describe", scene, "--json")
-    if code != 0:
-        raise StudyError(_failure("describe", code, words))
-    try:
-        return from_description(json.loads(out), Path(scene).name)
-    except json.JSONDecodeError as error:
-        raise StudyError(f"`mbs describe {scene} --json` gave no JSON: {error}") from error
+@dataclass(frozen=True)
+class Scene:
+    name: str
+    dimension: int
+    points: list           # (name, kind: free, fixed, driven, vector, marker or HIDDEN)
+    start: list            # their positions at t = 0, one row each, m
+    rods: list             # pairs of points, and so is a distance, which is drawn like a rod
+    bodies: list           # each a Body
+    springs: list          # pairs of points
+    torsion_springs: list  # pairs of directions, each from a point to a point
+    outputs: list          # names of what the author asked for
+    facts: str             # on its size, what the program says of it
+    end: float             # s; driven motion is not known beyond
+    scheme: str            # the form of the step that `mbs describe` takes
 
 
 def from_description(description, name):
@@ -59,10 +59,6 @@ def from_description(description, name):
     except (KeyError, TypeError, ValueError) as error:
         raise StudyError(f"`mbs describe {name} --json` lacks something to draw ({error!r}): "
                          "is the program older than study/view? Build it again") from error
-    unknown = sorted({kind for _, kind in points} - set(KINDS))
-    if dimension not in (2, 3) or unknown or any(len(row) != dimension for row in start):
-        raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
-                         f"points {', '.join(unknown) or 'known'}: its points do not fit")
     used = {point for element in (*rods, *springs, *(body.points for body in bodies)) for point in element}
     points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind) for place, (name, kind) in enumerate(points)]
     known = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
@@ -100,7 +96,8 @@ def simulate(place, scene, options, frames, csv, outputs, say):
             break
         say(f"  {words[-1].strip() if words else 'without a word'}")
     if code != 0:
-        raise StudyError(_failure("simulate", code, words) + ("" if options.step else " (choose a --step)" if code == 1 else ""))
+        ended = f"mbs simulate ended with {f'signal {-code}' if code < 0 else f'status {code}'}, without a word"
+        raise StudyError((words[-1].strip() if words else ended) + ("" if options.step else " (choose a --step)" if code == 1 else ""))
     for line in words:  # warnings, and what is not accurate
         say(f"  {line}")
     return f"{options.implementation}, {scene.scheme} form, step {step:g} s"
@@ -127,15 +124,7 @@ def _affordable(run, step, duration, say):
     return fits
 
 
-def _run(command, scene, *more):
+def _run(*words):
     """(exit status, standard output, lines of standard error)"""
-    if not os.access(ROOT / program_of(), os.X_OK):  # an absolute MBS_PROGRAM stays as it is
-        raise StudyError(f"{program_of()} is not built yet: run study/setup")
-    place = os.path.abspath(scene) if os.path.isfile(scene) else scene  # a child runs elsewhere
-    ended = child.run([program_of(), command, place, *map(str, more)])
+    ended = child.run([program_of(), *map(str, words)])
     return ended.code, ended.stdout, [line for line in ended.stderr.splitlines() if line.strip()]
-
-
-def _failure(command, code, words):
-    end = f"signal {-code}" if code < 0 else f"status {code}"
-    return words[-1].strip() if words else f"mbs {command} ended with {end}, without a word"

@@ -1,0 +1,95 @@
+// Steps of a judged run that are done again: where its motion was lost, and what a step left.
+#include <algorithm>
+#include <cmath>
+
+#include "run/judged_run.hpp"
+
+namespace mbs {
+namespace {
+
+using Clock = SampledTime::Clock;
+
+bool is_trapezoidal(Scheme scheme) {
+  return scheme == Scheme::penalty || scheme == Scheme::saddle_point;
+}
+
+}  // namespace
+
+/// The solution was found lost, for `reason`. Does the steps since the last good one again and
+/// judges each, so that the summary has the first that was lost. False if none of them was: with
+/// more states the judge knows better what its figures are small against. Its judgement counts
+/// then.
+bool JudgedRun::locate_loss(const std::string& reason) {
+  const long step = summary_.steps;
+  if (good_.step + 1 == step) {
+    lose(judge_, reason, step);
+    return true;
+  }
+  Judge judge = judge_;
+  judge.take_back(good_.figures);
+  State state = good_.state;
+  Simulation& simulation = access_.again();
+  simulation.set_state(state);
+  for (long i = good_.step + 1; i <= step; ++i) {
+    if (simulation.step().status == StepStatus::factorization_failed) {
+      lose(judge_, reason, step);
+      return true;
+    }
+    simulation.get_state(state);
+    const std::string first = judge.judge(time(i), state);
+    if (first.empty()) continue;
+    lose(judge, first, i);
+    return true;
+  }
+  judge_ = judge;
+  return false;
+}
+
+/// The step at which the motion found to have jumped at `step` did so, by doing those since the
+/// last sound look again; `step` if that does not show it.
+long JudgedRun::first_across(long step) {
+  const auto sound = std::lround(watch_.anchor_time() / settings_.step.step);
+  if (sound + 1 >= step) return step;
+  State state = watch_.anchor();
+  Simulation& simulation = access_.again();
+  simulation.set_state(state);
+  for (long i = sound + 1; i < step; ++i) {
+    if (simulation.step().status == StepStatus::factorization_failed) return step;
+    simulation.get_state(state);
+    if (watch_.is_across(time(i), state)) return i;
+  }
+  return step;
+}
+
+/// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
+/// steps. Not by those that cannot have left enough.
+void JudgedRun::add_speed_error() {
+  constexpr long kMost = 1024, kTimes = 16;
+  const long step = summary_.steps, since = step - done_again_;
+  if (!is_trapezoidal(settings_.step.scheme)) return;
+  if (step != steps_ && since < std::min(kMost, steps_ / kTimes - interval_)) return;
+  // Steps that were not projected as the others are not comparable.
+  if (step % settings_.step.projections_every != 0) return;
+  // Even if all steps left so much: the sum grows with the square of time.
+  const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
+                            (static_cast<double>(steps_) * time(steps_));
+  if (summary_.steps_at_limit == 0 &&
+      most_left(*access_.model, settings_.step, fastest_) < negligible) {
+    done_again_ = step;
+    return;
+  }
+  const auto begin = Clock::now();
+  if (!again_) {
+    again_.emplace(access_.create, *access_.model, settings_.step,
+                   static_cast<double>(summary_.passes) / static_cast<double>(step));
+  }
+  const auto ready = Clock::now();  // its set-up is no more judging than that of the run is a step
+  local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
+                          settings_.step.step, since,
+                          balance_ ? balance_->braked(time(step), state_) : 0.0);
+  done_again_ = step;
+  doing_again_ += SampledTime::since(ready);
+  aside_ += SampledTime::since(begin);
+}
+
+}  // namespace mbs
