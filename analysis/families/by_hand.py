@@ -58,19 +58,19 @@ def _round(least, most):
 def _cases(data, scheme, worth, unknown):
     """[(where, library)]"""
     costs = data.costs(scheme).fillna(unknown)
-    features, names = data.features.loc[costs.index], costs.columns
+    names, features = costs.columns, {number: data.features.loc[costs.index, number].to_numpy() for number in NUMBERS[scheme]}
     costs = costs.to_numpy() * data.weights(costs.index)[:, None]
     total = costs.sum(axis=0)
     tried = [(total.min(), [(EVERYWHERE, total.argmin())])]
     for first, second in permutations(NUMBERS[scheme]):
-        cost, *found = limit(features[first].to_numpy(), costs)
+        cost, *found = limit(features[first], costs)
         tried.append((cost, _parted(EVERYWHERE, first, *found)))
         values = sorted(set(features[first]))
         for at in (_round(*ends) for ends in zip(values, values[1:])):
-            low = (features[first] < at).to_numpy()
+            low = features[first] < at
             parts = _parted(EVERYWHERE, first, at, costs[low].sum(axis=0).argmin(), costs[~low].sum(axis=0).argmin())
             for side, inside in ((0, low), (1, ~low)):
-                cost, *found = limit(features[second].to_numpy()[inside], costs[inside])
+                cost, *found = limit(features[second][inside], costs[inside])
                 split = _parted(parts[side][0], second, *found)
                 tried.append((cost + costs[~inside].sum(axis=0).min(), [*parts[:side], *split, *parts[side + 1:]]))
     return [(where, names[place]) for where, place in min(tried, key=lambda one: one[0] + worth * len(one[1]))[1]]

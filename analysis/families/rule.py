@@ -116,18 +116,19 @@ def _held(data, rests, ratios):
 
 def _alone(data):
     """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another."""
-    for feature in ALONE:
-        losses = []
-        for family in dict.fromkeys(data.family.values()):
-            rest = data.without(family)
-            for scheme, one in data.losses.items():
-                left = one.index[[data.family[scene] == family for scene in one.index]]
-                if len(left) and len(rest.losses[scheme]):
-                    costs = rest.costs(scheme).fillna(UNKNOWN)
-                    _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(),
-                                                           costs.to_numpy() * rest.weights(costs.index)[:, None])
-                    losses += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
-        yield {"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses),
+    losses = {feature: [] for feature in ALONE}
+    for family in dict.fromkeys(data.family.values()):
+        rest = data.without(family)
+        for scheme, one in data.losses.items():
+            left = one.index[[data.family[scene] == family for scene in one.index]]
+            if len(left) and len(rest.losses[scheme]):
+                costs = rest.costs(scheme).fillna(UNKNOWN)
+                weighted, known = costs.to_numpy() * rest.weights(costs.index)[:, None], rest.features.loc[costs.index]
+                for feature, found in losses.items():
+                    _, limit, below, above = by_hand.limit(known[feature].to_numpy(), weighted)
+                    found += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
+    for feature, found in losses.items():
+        yield {"feature": feature, "mean_loss": numpy.nanmean(found), "worst_loss": numpy.nanmax(found), "scenes": len(found),
                "record": data.records}
 
 

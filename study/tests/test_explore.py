@@ -37,10 +37,10 @@ csc_klu/refactor           9.188  1.712 (1.710..1.713)          19.27   2.256  3
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """The set with its page, and another one of another processor beside it."""
+    """The set with its page, and another one of another processor beside it, which has the map alone."""
     base = tmp_path_factory.mktemp("sets")
-    for name in ("first", "second"):
-        shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns("engines", "extremes*"))
+    for name, without in (("first", ("engines", "extremes*")), ("second", ("families*", "accuracy*"))):
+        shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns(*without))
     facts = read_json(base / "second" / "set.json")
     write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND, "commit": COMMIT}})
     site.write_index(base / "first")

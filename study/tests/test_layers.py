@@ -3,6 +3,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 
 import yaml
 
@@ -47,7 +48,11 @@ def base(name):
 
 
 OURS = {"study", "analysis"}
-GRAPH = {name: {one for one in imported(name) if base(one) in OURS} for name in MODULES}
+
+
+@cache
+def graph():  # not as this file is imported, which each worker does
+    return {name: {one for one in imported(name) if base(one) in OURS} for name in MODULES}
 
 
 def layer(name):
@@ -64,16 +69,16 @@ def wrong(pairs):
 
 
 def edges():
-    return [(name, one) for name, found in GRAPH.items() for one in found if layer(name) != layer(one)]
+    return [(name, one) for name, found in graph().items() for one in found if layer(name) != layer(one)]
 
 
 def test_there_is_something_to_look_at():
-    assert {"study.core.lab", "analysis.core.records", "study.tools.store"} <= set(GRAPH)
-    assert "study.core.executor" in GRAPH["study.core.lab"]
+    assert {"study.core.lab", "analysis.core.records", "study.tools.store"} <= set(graph())
+    assert "study.core.executor" in graph()["study.core.lab"]
 
 
 def test_what_is_imported_is_there():
-    assert wrong((name, one) for name, found in GRAPH.items() for one in found
+    assert wrong((name, one) for name, found in graph().items() for one in found
                  if one not in MODULES and one not in ("study", "analysis", "study.tools")) == []
 
 
@@ -86,7 +91,7 @@ def test_the_common_layer_names_nothing_from_above():
     """Not as a text, either, from which a module could be loaded; parts come from their list."""
     above = {path.split("/")[1] for path in PATHS if path.count("/") > 1} - {"core", "tests"}
     named = []
-    for name in GRAPH:
+    for name in graph():
         if layer(name).endswith(".core"):
             tree = ast.parse((ROOT / MODULES[name]).read_text(encoding="utf-8"))
             named += [(name, node.value) for node in ast.walk(tree) if isinstance(node, ast.Constant) and re.match(r"(study|analysis)\.(?!core)\w", str(node.value))]
@@ -125,7 +130,7 @@ def test_parts_import_their_twin_and_only_those_that_they_build_upon():
 
 
 def test_of_each_other_tools_import_only_what_they_share():
-    between = [(name, one) for name, found in GRAPH.items() for one in found if layer(name) == layer(one) == "study.tools"]
+    between = [(name, one) for name, found in graph().items() for one in found if layer(name) == layer(one) == "study.tools"]
     assert wrong((name, one) for name, one in between if name.split(".")[2] != one.split(".")[2] and one.split(".")[2] not in SHARED) == []
 
 
@@ -135,7 +140,7 @@ def test_nothing_imports_tools_or_tests():
 
 
 def test_no_modules_import_each_other_in_a_circle():
-    left = {name: {one for one in found if one in GRAPH and one != name} for name, found in GRAPH.items()}
+    left = {name: {one for one in found if one in graph() and one != name} for name, found in graph().items()}
     while free := [name for name, found in left.items() if not found & set(left)]:
         for name in free:
             del left[name]

@@ -15,7 +15,7 @@ const ReferenceRun& kept_reference(const std::string& setting, const Scene& scen
   if (found != runs.end()) return found->second;
   // The gate's take 800 and most of the time of all tests. The states that single steps are
   // compared at are as many.
-  constexpr int kSteps = kSlowReference ? 100 : 400;
+  constexpr int kSteps = kSlowReference ? 100 : 200;
   return runs.emplace(scene.name, run_reference(scene, settings, kSteps)).first->second;
 }
 
