@@ -71,28 +71,18 @@ def cases(tables, view):
     return found
 
 
-def where(row):
-    """The limits of a case of the rule by hand."""
-    return _said(_limits(row))
-
-
-def _limits(row):
-    """[(number, 0: from it on or 1: below it, limit)]"""
-    columns = [(name, end, f"{('least', 'below')[end]}_{name}") for name in by_hand.SHOWN for end in (0, 1)]
-    return [(name, end, row[column]) for name, end, column in columns if not pandas.isna(row[column])]
-
-
-def _said(limits):
-    return " and ".join(LIMITS[name][end].format(number(value)) for name, end, value in limits)
+def where(row, but=""):
+    """The limits of a case of the rule by hand, but for those of one number."""
+    return " and ".join(LIMITS[name][end].format(number(row[column])) for name in by_hand.SHOWN if name != but
+                        for end in (0, 1) if not pandas.isna(row[column := f"{('least', 'below')[end]}_{name}"]))
 
 
 def _taken(rows):
-    """The cases of a form in words: one that a single limit parts from the others before these, or what is taken most before the others."""
+    """The cases of a form in words: first that which one limit parts from the others, or what is taken most."""
     if len(rows) == rows.library.nunique() == 3:
-        first, second, third = sorted(rows.to_dict("records"), key=lambda row: len(_limits(row)))
-        name, end, value = _limits(first)[0]
-        rest = [limit for limit in _limits(second) if limit != (name, 1 - end, value)]
-        return f"{first['library']} if {where(first)}; else {second['library']} if {_said(rest)}, else {third['library']}"
+        first, second, third = sorted(rows.to_dict("records"), key=lambda row: where(row).count(" and "))
+        parting = next(name for name in by_hand.SHOWN if where(first, name) == "")
+        return f"{first['library']} if {where(first)}; else {second['library']} if {where(second, parting)}, else {third['library']}"
     usual, *others = sorted((some for _, some in rows.groupby("library", sort=False)), key=lambda some: -some.scenes.sum())
     return "; ".join([usual.library.iloc[0], *(f"but {some.library.iloc[0]} if {', or '.join(map(where, some.to_dict('records')))}" for some in others)])
 
