@@ -341,6 +341,25 @@ TEST(Judge, JudgesEnergyOfConservativeModelsOnly) {
   EXPECT_EQ(lenient.judge(0.2, lost), "the state is not finite");
 }
 
+TEST(Judge, ALightPartIsJudgedByItsOwnEnergy) {
+  ModelData data;  // two masses that fly freely, one a millionth of the other
+  data.points = {{"heavy", 0, {0, 0, 0}}, {"light", 2, {0, 1, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}, {2, 2, 1e-6}, {3, 3, 1e-6}};
+  data.force = {0.0, 0.0, 0.0, 0.0};
+  data.initial_velocity = {1.0, 0.0, 1.0, 0.0};
+  const Scene scene{"two", Model(std::move(data)), {}, {}};
+  const auto state = [](double light) {
+    return State{{0, 0, 0, 1}, {1, 0, light, 0}, {0, 0, 0, 0}, {}, 0.0};
+  };
+  Judge judge(scene, state(1.0), 0.0);
+  EXPECT_EQ(judge.judge(0.1, state(1.001)), "");
+  EXPECT_EQ(judge.degradation(), "");
+  EXPECT_EQ(judge.judge(0.2, state(1.02)), "");
+  EXPECT_TRUE(judge.degradation().starts_with("energy drift of a part")) << judge.degradation();
+  EXPECT_LT(*judge.energy_drift_max(), 1e-6);
+  EXPECT_TRUE(judge.judge(0.3, state(1.2)).starts_with("energy of a part drifted"));
+}
+
 TEST(Judge, WithDampersAloneEnergyNeverGrows) {
   const auto scene = [](double c0, double c1) {  // the force of c0 + c1 L' beside the spring
     Scene result = spring_mass(0.0);

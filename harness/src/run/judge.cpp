@@ -92,10 +92,9 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
   const double size = extent(model.points());
   so_far_.energy.reference = kinetic_energy(model, velocity(initial)) + potential;
   so_far_.energy.scale = least_energy_scale(model, initial.q, potential, size);
-  if (!conservative_) {
-    parts_.emplace(model, initial, start, size);
-    so_far_.parts = parts_->start();
-  }
+  parts_.emplace(model, initial, start, size);
+  if (conservative_ && (carriage_ || parts_->start().size() < 2)) parts_.reset();
+  if (parts_) so_far_.parts = parts_->start();
   length_ = judged_length(model);
   for (const Torsion& torsion : torsions(model, start, initial.q))
     so_far_.twists.push_back(torsion.twist);
@@ -216,16 +215,17 @@ std::string Judge::judge_energy(double t, const State& state) {
     spoil();
     return "the state is too large to be judged";
   }
-  if (!conservative_) {
+  if (conservative_) {
+    so_far_.energy.judge(kinetic, potential, false);
+    if (!(*energy_drift_max() <= bounds_.energy_drift))
+      return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})",
+                         *energy_drift_max(), bounds_.energy_drift);
+  } else {
     so_far_.energy.scale = std::max(so_far_.energy.scale, kinetic);
-    if (parts_) parts_->judge(t, state, so_far_.parts);
-    if (part_drift() <= bounds_.energy_drift) return "";
-    return fmt::format("energy of a part drifted by {:.2e} of its scale (allowed {:g})",
-                       part_drift(), bounds_.energy_drift);
   }
-  so_far_.energy.judge(kinetic, potential, false);
-  if (*energy_drift_max() <= bounds_.energy_drift) return "";
-  return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
+  if (parts_) parts_->judge(t, state, so_far_.parts);
+  if (part_drift() <= bounds_.energy_drift) return "";
+  return fmt::format("energy of a part drifted by {:.2e} of its scale (allowed {:g})", part_drift(),
                      bounds_.energy_drift);
 }
 

@@ -78,7 +78,7 @@ class Judge {
     bool off_branch = false;
     double excess = 0.0, work = 0.0;  // J
     std::optional<double> imbalance;
-    std::vector<EnergyFigures> parts;  // where the whole does not conserve energy
+    std::vector<EnergyFigures> parts;
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }
   /// Judges on from where another judge of the same run had these.
@@ -106,7 +106,7 @@ class Judge {
 
  private:
   std::string judge_energy(double t, const State& state);
-  /// Largest drift of a part; 0 where the whole conserves energy.
+  /// Largest drift of a part; 0 where there are none that are judged by themselves.
   [[nodiscard]] double part_drift() const;
   /// Into moved_, in the frame of feet that are carried along.
   void move_with_feet(double t, const State& state);
@@ -120,7 +120,7 @@ class Judge {
   std::vector<double> phi_scale_;
   bool conservative_;
   std::optional<EvenCarriage> carriage_;
-  std::optional<PartEnergies> parts_;      // where the whole does not conserve energy
+  std::optional<PartEnergies> parts_;      // where the whole is no guide, or would hide one
   std::vector<double> frame_velocity_;     // n, m/s: 0 where feet rest
   std::vector<double> moved_q_, moved_v_;  // n, where they are carried
   double length_ = 1.0;                    // m

@@ -32,8 +32,9 @@ struct EnergyFigures {
   [[nodiscard]] double drift() const { return scale > 0.0 ? farthest / scale : farthest; }
 };
 
-/// A driver makes the energy of the whole tell nothing. Parts that no row, mass, spring or law
-/// connects with one conserve theirs all the same, or lose some if they have dampers.
+/// A driver makes the energy of the whole tell nothing, and a heavy part hides a light one. Parts
+/// that no row, mass, spring or law connects with a driver, or with each other, conserve theirs all
+/// the same, or lose some if they have dampers.
 ///
 ///   PartEnergies parts(model, initial, extent);
 ///   auto figures = parts.start();
