@@ -49,7 +49,7 @@ def of_numbers(found):
 
 
 def _records(one):
-    return "" if not one.records else one.records[0] + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
+    return "" if not one.records else one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
 
 
 def table(rows, columns, long=False):
