@@ -140,7 +140,7 @@ def save(figure, path, above=""):
         figure.set_layout_engine(None)
     kind, (width, height), inches = Path(path).suffix, figure.get_size_inches(), figure.dpi_scale_trans.inverted()
     # Each of its children once, with all that they hold: figure.get_tightbbox() asks axes twice and legends three times.
-    shown = [one for one in figure.get_children() if one is not figure.patch and one.get_visible()]
+    shown = [one for one in figure.get_children() if one is not figure.patch and one.get_visible()] or [figure.patch]
     box = Bbox.union([one.get_tightbbox() for one in shown]).transformed(inches)
     if above:
         line = figure.text(box.x0 / width, (box.y1 + 0.08) / height, above, fontsize=8, color=GREY, va="bottom")
