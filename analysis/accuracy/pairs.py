@@ -1,5 +1,4 @@
-# Two settings of one implementation side by side at one step: the form of the step, the precision of its numbers, the
-# reuse of its factors.
+# Two settings of one implementation side by side at one step: the form of the step, the precision of its numbers, the reuse of its factors.
 import pandas
 
 from analysis.core import timing

@@ -47,8 +47,7 @@ class Subject(namedtuple("Subject", "name title scene duration steps loops entry
         return 0 if self.loops else round(self.duration / SAMPLES / step)
 
     def words(self, step, duration=None):
-        """What a run of a step and duration is asked for, besides its setting. A four-bar is judged as often in a run
-        at all steps below 5 ms."""
+        """What a run of a step and duration is asked for, besides its setting. A four-bar is judged as often in a run at all steps below 5 ms."""
         judged = ("--judge-every", f"{max(1, int(JUDGED_S / step + 1e-3))}") if self.loops else ()
         return ("--step", f"{step:g}", "--duration", f"{duration or self.duration:g}", *judged)
 

@@ -89,8 +89,7 @@ def _timed(rows, timed):
 
 
 def _reached(rows):
-    """[(limit, the fastest row that meets it)]; a row that is the fastest for several is given once, with the smallest
-    limit that it meets."""
+    """[(limit, the fastest row that meets it)]; a row that is the fastest for several is given once, with the smallest limit that it meets."""
     best = {one.key: one for one in (_fastest(rows, limit) for limit in LIMITS) if one is not None}
     return [(min(limit for limit in LIMITS if one.error <= limit), one) for one in best.values()]
 

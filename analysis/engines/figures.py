@@ -49,8 +49,7 @@ def _panel(axes, engines, ours, own):
         done = finished(rows)
         axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3, markeredgewidth=0)
         front = rows.loc[pareto(rows)]
-        axes.plot(front.time, front.error, color=colour, marker=marker, markersize=5.5, linewidth=1.6,
-                  markeredgecolor="white", markeredgewidth=0.6)
+        axes.plot(front.time, front.error, color=colour, marker=marker, markersize=5.5, linewidth=1.6, markeredgecolor="white", markeredgewidth=0.6)
         lost = rows[~rows.status.isin((*FINISHED, *NOT_MADE)) & (rows.time > 0)]
         # A share of the height each, so that engines do not cover each other's crosses.
         axes.plot(lost.time, numpy.full(len(lost), 0.985 - 0.025 * place), "x", color=colour, markersize=4,

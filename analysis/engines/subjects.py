@@ -1,5 +1,4 @@
-# What is simulated: the N-four-bar past its singular positions, the same before the first one, a double pendulum, and
-# Andrews' mechanism.
+# What is simulated: the N-four-bar past its singular positions, the same before the first one, a double pendulum, and Andrews' mechanism.
 #
 # Scenes without singular positions need a motion that is known. Until 0.6 s the N-four-bar is one (cos phi = 0 first
 # at 0.71 s or later for every N): its closed form is exact, and it has loops of every size. The double pendulum is an

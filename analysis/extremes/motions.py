@@ -1,9 +1,8 @@
 # The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it; scenes that are more: springs, redundant rods.
 #
-# All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod
-# of mass m turns about its foot: m length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with
-# its ends without turning: m length^2, weight at length; how long it is does not matter. With the sums R of the
-# rods' and C of the couplers' masses the energy is
+# All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod of mass m turns about its foot: m
+# length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with its ends without turning: m length^2, weight at length; how long it is
+# does not matter. With the sums R of the rods' and C of the couplers' masses the energy is
 #     length^2 (R/3 + C) phi'^2 / 2 + g length (R/2 + C) cos phi,
 # hence phi'' = k sin phi, k = (g / length) (R/2 + C) / (R/3 + C): Eq. (9) of paper/README.md for equal masses.
 # Multiplying all masses by one number leaves k; a length L stretches time by sqrt(L).

@@ -128,8 +128,7 @@ def _alone(data):
                     _, limit, below, above = by_hand.limit(known[feature].to_numpy(), weighted)
                     found += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
     for feature, found in losses.items():
-        yield {"feature": feature, "mean_loss": numpy.nanmean(found), "worst_loss": numpy.nanmax(found), "scenes": len(found),
-               "record": data.records}
+        yield {"feature": feature, "mean_loss": numpy.nanmean(found), "worst_loss": numpy.nanmax(found), "scenes": len(found), "record": data.records}
 
 
 class _Rule:
@@ -184,11 +183,10 @@ class _Data:
         self.registry, known = registry, tables["mechanisms"].set_index("scene")
         complete = known[known[list(FEATURES)].notna().all(axis=1)]
         self.features, self.record = complete[list(dict.fromkeys((*FEATURES, *ALONE)))].astype(float), complete.record
-        n, m = self.features.n, self.features.m
-        self.features["rows"] = n + m  # of the matrix of Eq. (12)
-        # Its operations in % of a dense solver's, as `mbs describe` prints them (harness/src/describe/elimination.hpp).
-        self.features["saddle_dense"] = 100 * self.features.saddle_flops / (
-            n * m**2 + _full_flops(m) + self.features.stiff * (_full_flops(n) + n**2 * m))
+        n, m, full_flops = self.features.n, self.features.m, lambda n: n * (n + 1) * (2 * n + 1) / 6
+        self.features["rows"] = n + m  # of the matrix of Eq. (12); then its operations in % of a dense solver's, as elimination.hpp has them
+        dense = n * m**2 + full_flops(m) + self.features.stiff * (full_flops(n) + n**2 * m)
+        self.features["saddle_dense"] = 100 * self.features.saddle_flops / dense
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
         shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
         for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):
@@ -219,10 +217,6 @@ class _Data:
         """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""
         losses = self.losses[scheme].clip(upper=MOST)
         return losses * (1 + 4 * losses)
-
-
-def _full_flops(n):
-    return n * (n + 1) * (2 * n + 1) / 6
 
 
 def shape(scene):

@@ -74,8 +74,7 @@ def _verdict(sign, bound, value, low, high):
 
 
 def _growth(steps, form):
-    """Exponents of the fastest variant at each size from GROWTH_FROM on, with Student's interval of the fit; and the
-    largest one's set-up."""
+    """Exponents of the fastest variant at each size from GROWTH_FROM on, with Student's interval of the fit; and the largest one's set-up."""
     rows = _fastest(steps[steps.variables >= GROWTH_FROM], "loops", "step_us", True).sort_values("variables")
     whole = len(rows) > 2 and rows.variables.iloc[-1] >= GROWTH_TO
     for name, column in (("a step's time", "step_us"), ("a pass's time", "pass_us"), ("memory", "memory_bytes")):

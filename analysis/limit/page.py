@@ -37,6 +37,5 @@ def lost(tables):
             if row["status"] not in ("ok", {"scenes": "slower", "batches": "unsupported"}.get(name)):
                 where = row.get("scene") or f"four-bar:{row['loops']:.0f}" + (", saddle-point" if row["form"] != "penalty" else "")
                 what = row["status"], row["reason"].partition(" (first ")[0]
-                found.setdefault(what, {}).setdefault(row["implementation"], []).append(
-                    where.removeprefix("harness/scenes/").removesuffix(".json"))
+                found.setdefault(what, {}).setdefault(row["implementation"], []).append(where.removeprefix("harness/scenes/").removesuffix(".json"))
     return [(*what, list(names.items())) for what, names in found.items()]

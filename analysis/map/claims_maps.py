@@ -42,9 +42,8 @@ def over_fill(results):
 
 
 def regions(results):
-    """F6, F7. Rules: the system wins every cell of its region, ranked among the stand-ins of the paper's systems; a cell
-    that one of several may win is undecided, one whose winner stands for two systems tells nothing of either. F6 also: no
-    cell at all is won by a dense version, on any pair."""
+    """F6, F7. Rules: the system wins every cell of its region, ranked among the stand-ins of the paper's systems; a cell that one of several may win
+    is undecided, one whose winner stands for two systems tells nothing of either. F6 also: no cell at all is won by a dense version, on any pair."""
     asked = {(one["variables"], fill) for one in results.view.settings["columns"] for fill in one["fills"]}
     cells = [cell for cell in map_cells(results, standing(results))  # others crowd where winners change
              if cell.ranking and (cell.variables, cell.fill_asked or "natural") in asked]

@@ -41,9 +41,8 @@ def dense_from(results):
 
 
 def prices(results, names):
-    """The price of always using one: [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed"}] of times over the
-    best of each cell, the lowest geometric mean first; after all others those that fail in some cell or lack a ratio in one, as
-    nobody can always use them."""
+    """The price of always using one: [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed"}] of times over the best of each
+    cell, the lowest geometric mean first; after all others those that fail in some cell or lack a ratio in one, as nobody can always use them."""
     rows, cells = [], [cell for cell in map_cells(results, names) if cell.ranking]
     pilots = {cell.scene: results.rows(cell.scene).groupby("implementation").pilot_us.first() for cell in cells}
     for name in names:

@@ -7,8 +7,7 @@ from analysis.core.registry import NULL
 from analysis.core.schema import conform, of_part
 from analysis.map import carry
 from analysis.map.cells import table as cells
-from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims,
-                                 tuned_blas)
+from analysis.map.claims import (compilers, dense_pairs, pivoting, solvers, sparse_against_dense, starting_sparse, table1, table2_claims, tuned_blas)
 from analysis.map.claims_maps import over_fill, regions
 from analysis.map.results import Results, with_samples
 from analysis.map.timed import AFTER, timed_rows

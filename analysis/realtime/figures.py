@@ -16,8 +16,7 @@ def draw(tables, view):
 
 
 def distributions(table, machine):
-    """A panel a deadline and size: from the median to the longest step, a line an implementation. Deadlines of one size stand side
-    by side."""
+    """A panel a deadline and size: from the median to the longest step, a line an implementation. Deadlines of one size stand side by side."""
     table, left = run_of(table, table.status == "dropped")
     if table.median_us.notna().sum() == 0:
         return nothing("No run of which there are step times.")

@@ -16,8 +16,7 @@ from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, ki
 
 NOT_JUDGED = "not judged"  # the precision of what has nothing to be compared with
 ORDER_NOISE = 1e-9  # differences of successive steps below this share of a component are rounding
-FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step", "steps_at_limit", "energy_drift_max",
-           "constraint_violation_max")
+FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step", "steps_at_limit", "energy_drift_max", "constraint_violation_max")
 
 
 def build(records, view):

@@ -22,8 +22,7 @@ def build(records, view):
         elif record.role == "map":
             found["maps"].append(_run(record))
         elif record.role == "whole":
-            row = {key: value for key, value in _run(record).items()
-                   if key not in ("precision", "step", "penalty_asked", "alpha_dt2_4", "failed_at")}
+            row = {key: value for key, value in _run(record).items() if key not in ("precision", "step", "penalty_asked", "alpha_dt2_4", "failed_at")}
             found["whole"].append(row | {"must_hold": holds(row)})
     order = ["scheme", "precision", "loops", "step", "penalty"]
     tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}

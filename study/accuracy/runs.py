@@ -60,8 +60,7 @@ class Runs:
         return points.runs([record], self.subject, self.known).to_dict("records")[0]
 
     def quick(self, scene, step, contenders, behind, dense=False):
-        """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
-        order."""
+        """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its order."""
         for patience in PATIENCE if contenders else ():
             self.time("look", scene, "default", step, contenders, dense=dense, more=("--patience", patience))
             rows = self.measured()

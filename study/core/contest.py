@@ -17,10 +17,9 @@ Asked = namedtuple("Asked", "scene contenders role settings", defaults=("gate", 
 
 
 def verdicts(lab, asked, *, each, seconds=None, drop=False):
-    """[{contender: (verdict, reason)}] of each of `asked`, all at once. `each`: s that one contender may take; `seconds`: a process,
-    else enough for all of it and the reference. Those of one environment share a process, which runs the reference once for all; if it
-    ends early, its contenders are asked one by one, so that only who ended it is lost; not where it was out of time with enough for
-    all of them, which is the reference's."""
+    """[{contender: (verdict, reason)}] of each of `asked`, all at once. `each`: s that one contender may take; `seconds`: a process, else enough for
+    all of it and the reference. Those of one environment share a process, which runs the reference once for all; if it ends early, its contenders are
+    asked one by one, so that only who ended it is lost; not where it was out of time with enough for all of them, which is the reference's."""
     cells = [(place, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
                           seconds=seconds or each * (1 + len(one.contenders))))
              for place, one in enumerate(asked) for group in by_environment(one.contenders).values()]
@@ -94,8 +93,7 @@ def elsewhere(lab, cell):
     here = usual(lab)
     for one in lab.contenders:
         if one not in here:
-            lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded",
-                     "on another BLAS pair: timed with the sizes alone")
+            lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded", "on another BLAS pair: timed with the sizes alone")
 
 
 def about(lab, scenes):

@@ -64,8 +64,7 @@ def growth(lab):
 def listed(settings):
     """[(scene, kind, settings of the step)] that own code and libraries meet on, most worth first: problems at their own steps, the others
     at the program's."""
-    problems = [(one.scene, "problem", ("--step", f"{one.steps[0]:g}", *one.settings))
-                for one in read_list()[1] if one.name in settings["problems"]]
+    problems = [(one.scene, "problem", ("--step", f"{one.steps[0]:g}", *one.settings)) for one in read_list()[1] if one.name in settings["problems"]]
     files = {path.stem: path.relative_to(ROOT).as_posix() for path in (ROOT / "harness/scenes/examples").glob("*.json")}
     return [*problems, *((f"four-bar:49,fill={fill:g}", "fill", ()) for fill in settings["fills"]),
             *((files[name], "example", ()) for name in settings["examples"])]

@@ -105,9 +105,8 @@ class Probe:
 
 
 def search(probe, count):
-    """The last place below `count` that `probe` says is "kept", -1 if none is, None where it gives up. Upwards in
-    jumps, then by bisection. A place that is "unsure", since one of its two runs failed, may have been interrupted: the
-    search goes on above it, but it is no answer."""
+    """The last place below `count` that `probe` says is "kept", -1 if none is, None where it gives up. Upwards in jumps, then by bisection. A place
+    that is "unsure", since one of its two runs failed, may have been interrupted: the search goes on above it, but it is no answer."""
     low, high, ask = -1, count, cache(probe)
     while high - low > 1:
         at = (low + high) // 2 if high < count else min(low + JUMP, count - 1)

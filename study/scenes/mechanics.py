@@ -130,8 +130,7 @@ def half_car(times, tolerance=TOLERANCE):
         return [*rates, *_accelerations(by, masses, force, inertia)]
     height, *angles = integrate(derivative, times, [0.35, 0, numpy.angle(front), numpy.angle(rear), 0, 0, 0, 0], tolerance)[:4]
     at = 0.8 + 1j * height + offsets @ numpy.exp(1j * numpy.array(angles))
-    return {f"{name}.{axis}": part for name, k in (("body", 0), ("front", 3), ("rear", 4))
-            for axis, part in (("x", at[k].real), ("y", at[k].imag))}
+    return {f"{name}.{axis}": part for name, k in (("body", 0), ("front", 3), ("rear", 4)) for axis, part in (("x", at[k].real), ("y", at[k].imag))}
 
 
 def double_pendulum(lengths, masses):

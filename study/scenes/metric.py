@@ -1,9 +1,8 @@
 # The accuracy metric of the IFToMM library of computational benchmark problems; Richardson's extrapolation of runs with a step, half of
 # it and a quarter of it.
 #
-# M. Gonzalez, D. Dopico, U. Lugris, J. Cuadrado: A benchmarking system for MBS simulation software,
-# Multibody Syst. Dyn. 16 (2006) 179-190: the error of each component at each of the samples, divided by
-# the larger of the reference and a threshold; the whole is their root mean square.
+# M. Gonzalez, D. Dopico, U. Lugris, J. Cuadrado: A benchmarking system for MBS simulation software, Multibody Syst. Dyn. 16 (2006) 179-190: the error
+# of each component at each of the samples, divided by the larger of the reference and a threshold; the whole is their root mean square.
 import numpy
 
 SAMPLES = 400

@@ -42,8 +42,7 @@ def four_bar(times, loops):
 
 
 def andrews_end():
-    """Positions of Andrews' mechanism at 0.03 s from the published angles: [Mazzia, Magherini, 2008],
-    computed there in quadruple precision."""
+    """Positions of Andrews' mechanism at 0.03 s from the published angles: [Mazzia, Magherini, 2008], computed there in quadruple precision."""
     beta, gamma = 0.1581077119629904e2, 0.4082224013073101e-1
     delta, epsilon = 0.5244099658805304, 0.1048080741042263e1
     a, b = numpy.array([-0.06934, -0.00227]), numpy.array([-0.03635, 0.03273])

@@ -97,8 +97,7 @@ def next_step(pilots, error, order, start, duration):
     if not pilots:
         return Next(step=start)
     find = lambda step: next((pilot for pilot in pilots if close(pilot.step, step)), None)
-    good = (pilot for pilot in pilots if pilot.valid and pilot.estimate <= error
-            and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01)
+    good = (pilot for pilot in pilots if pilot.valid and pilot.estimate <= error and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01)
     for pilot in sorted(good, key=lambda pilot: -pilot.step):
         step, reached = pilot.step, known(pilot, pilots, error, order)
         if reached <= error:
