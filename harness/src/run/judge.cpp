@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 
+#include "model_math/connected_parts.hpp"
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
@@ -92,9 +93,10 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
   const double size = extent(model.points());
   so_far_.energy.reference = kinetic_energy(model, velocity(initial)) + potential;
   so_far_.energy.scale = least_energy_scale(model, initial.q, potential, size);
-  parts_.emplace(model, initial, start, size);
-  if (conservative_ && (carriage_ || parts_->start().size() < 2)) parts_.reset();
-  if (parts_) so_far_.parts = parts_->start();
+  if (!conservative_ || (!carriage_ && ConnectedParts(model).undriven().size() > 1)) {
+    parts_.emplace(model, initial, start, size);
+    so_far_.parts = parts_->start();
+  }
   length_ = judged_length(model);
   for (const Torsion& torsion : torsions(model, start, initial.q))
     so_far_.twists.push_back(torsion.twist);
