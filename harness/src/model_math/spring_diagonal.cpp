@@ -25,6 +25,8 @@ struct LawAsSpring {
 
 class Sum {
  public:
+  SpringDiagonal diagonal;
+
   explicit Sum(const Model& model) : model_(model) {
     diagonal.stiffness.resize(static_cast<std::size_t>(model.variables()));
     diagonal.damping = diagonal.stiffness;
@@ -87,9 +89,6 @@ class Sum {
   }
 
   const Model& model_;
-
- public:
-  SpringDiagonal diagonal;
 };
 
 }  // namespace
