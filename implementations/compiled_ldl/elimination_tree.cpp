@@ -191,6 +191,11 @@ Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vec
     Tree other = symbolic.tree(Waiting::is_filled);
     if (other.cycles < tree.cycles) tree = std::move(other);
   }
+  // Merged one by one, many narrow fronts never get there.
+  const int rows = std::accumulate(sizes.begin(), sizes.end(), 0);
+  const FrontTime time = front_time(rows, 0, 0, width);
+  const double cycles = time.work + time.latency;
+  if (cycles < tree.cycles) tree = {.fronts = {{order, {}}}, .cycles = cycles};
   tree.fill = symbolic.fill();
   return tree;
 }
