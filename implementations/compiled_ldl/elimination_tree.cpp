@@ -23,7 +23,7 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
     const double packs = std::ceil(static_cast<double>(inside + border) / width);
     time.work += panel * (20.0 + packs * (panel + 0.35 * inside));
     time.latency += 5.0 * std::ceil(panel / 2.0);  // a division for two pivots
-    if (border == 2 && nodes == 1) {
+    if (border == 2 && nodes == 1 && pivots <= kPanel) {
       time.work += 10.0;
       time.latency += 15.0;  // Panels::update_two(): a vector waits for stores of single numbers
     } else {
