@@ -9,6 +9,12 @@
 #include "program.hpp"
 
 namespace mbs::compiled_ldl {
+namespace {
+
+/// Cycles in which a wide front takes its rows out of others and gives them back.
+double widening(int pivots, int border) { return pivots > kPanel && border > 0 ? 200.0 : 0.0; }
+
+}  // namespace
 
 /// Constants fitted to measurements of the standard scenes and of filled four-bars, each in several
 /// orders.
@@ -17,13 +23,13 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
     const double rows = pivots + border;
     return {10.0 + 20.0 * pivots + 0.7 * pivots * rows * rows, 0.0};
   }
-  FrontTime time;
+  FrontTime time{widening(pivots, border), 0.0};
   for (int from = 0; from < pivots; from += kPanel) {
     const int panel = std::min(kPanel, pivots - from), inside = pivots - from - panel;
     const double packs = std::ceil(static_cast<double>(inside + border) / width);
     time.work += panel * (20.0 + packs * (panel + 0.35 * inside));
     time.latency += 5.0 * std::ceil(panel / 2.0);  // a division for two pivots
-    if (border == 2 && nodes == 1) {
+    if (border == 2 && nodes == 1 && pivots <= kPanel) {
       time.work += 10.0;
       time.latency += 15.0;  // Panels::update_two(): a vector waits for stores of single numbers
     } else {
@@ -54,6 +60,8 @@ namespace {
 /// How the time of two fronts is predicted that might become one: the parent waits for its child to
 /// the end, or other fronts fill the waiting.
 enum class Waiting { counts, is_filled };
+/// A front gets wide in several steps, of which the first must not pay for all.
+enum class Widening { counts, is_free };
 
 class Symbolic {
  public:
@@ -74,9 +82,9 @@ class Symbolic {
 
   [[nodiscard]] std::size_t fill() const { return fill_; }
 
-  [[nodiscard]] Tree tree(Waiting waiting) const {
+  [[nodiscard]] Tree tree(Waiting waiting, Widening of_wide) const {
     Symbolic copy = *this;
-    copy.merge(waiting);
+    copy.merge(waiting, of_wide);
     return copy.by_levels();
   }
 
@@ -132,12 +140,13 @@ class Symbolic {
     }
   }
 
-  void merge(Waiting waiting) {
+  void merge(Waiting waiting, Widening of_wide) {
     std::vector<int> pivot_weight(size_), border_weight(count_);
     const auto cycles = [&](int pivots, int k) {  // of a front with the border of k
       const auto nodes = static_cast<int>(rows_[k].size());
       const FrontTime time = front_time(pivots, border_weight[k], nodes, width_);
-      return waiting == Waiting::counts ? time.work + time.latency : time.work;
+      const double free = of_wide == Widening::is_free ? widening(pivots, border_weight[k]) : 0.0;
+      return time.work - free + (waiting == Waiting::counts ? time.latency : 0.0);
     };
     pivots_.resize(count_);
     for (int k = 0; k < count_; ++k) {
@@ -186,11 +195,18 @@ Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vec
                int width, std::size_t most) {
   const Symbolic symbolic(graph, order, sizes, width, most);
   if (symbolic.fill() > most) return {};
-  Tree tree = symbolic.tree(Waiting::counts);
-  if (width != 1) {  // there are latencies
-    Tree other = symbolic.tree(Waiting::is_filled);
+  Tree tree = symbolic.tree(Waiting::counts, Widening::is_free);
+  const auto take = [&tree](Tree other) {
     if (other.cycles < tree.cycles) tree = std::move(other);
+  };
+  if (width != 1) {  // there are latencies and wide fronts
+    take(symbolic.tree(Waiting::is_filled, Widening::is_free));
+    take(symbolic.tree(Waiting::counts, Widening::counts));
+    take(symbolic.tree(Waiting::is_filled, Widening::counts));
   }
+  // Merged one by one, many narrow fronts never get there.
+  const FrontTime time = front_time(std::accumulate(sizes.begin(), sizes.end(), 0), 0, 0, width);
+  take({.fronts = {{order, {}}}, .cycles = time.work + time.latency});
   tree.fill = symbolic.fill();
   return tree;
 }

@@ -137,6 +137,43 @@ bool chain_is_eliminated_from_both_ends() {
   return ends && waiting > 1 && both < one && program.cycles <= both;
 }
 
+/// Where any two points are coupled, or half of all pairs, fronts merged one by one would be many.
+bool full_matrices_are_one_front() {
+  Random random(1);
+  for (const int points : {50, 80}) {
+    Pattern full{.dimension = 2, .points = points, .cliques = {}, .borders = {}};
+    for (int i = 0; i < points; ++i) {
+      for (int j = 0; j <= i; ++j) full.cliques.push_back({j, i});
+    }
+    Pattern half = full;
+    std::erase_if(half.cliques,
+                  [&](const auto& pair) { return pair[0] != pair[1] && number(random) < 0.0; });
+    for (const int width : {4, 8}) {
+      for (const Pattern& pattern : {full, half}) {
+        if (compile(pattern, width).fronts.size() > 1) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Bodies of two points in a row, in space, with constraints in each and between neighbours: fronts
+/// of a few more pivots than a panel's would be wide.
+bool fronts_in_a_row_are_one_panel() {
+  constexpr int kBodies = 20;
+  Pattern pattern{.dimension = 3, .points = 2 * kBodies, .cliques = {}, .borders = {}};
+  for (int i = 0; i < 2 * kBodies; i += 2) {
+    pattern.cliques.push_back({i, i + 1});
+    for (int k = 0; k < 2; ++k) {
+      pattern.borders.push_back({i, i + 1});
+      if (i > 0) pattern.borders.push_back({i - 2, i - 1, i, i + 1});
+    }
+  }
+  const Program program = compile(pattern, 8);
+  return std::none_of(program.fronts.begin(), program.fronts.end(),
+                      [](const Front& front) { return front.pivots > kPanel; });
+}
+
 /// What program.hpp tells of three points in a row.
 bool worked_example_is_compiled() {
   const Program program = compile(chain_of(3), 1);
@@ -244,6 +281,8 @@ int main() {
       {worked_example_is_compiled(), "three points in a row are not compiled as program.hpp says"},
       {dependency_chain_counts(), "chains of fronts are not predicted as they should be"},
       {chain_is_eliminated_from_both_ends(), "a chain is not eliminated from both ends"},
+      {full_matrices_are_one_front(), "a matrix that is full, or soon is, has several fronts"},
+      {fronts_in_a_row_are_one_panel(), "fronts are wide where two narrow ones are faster"},
       {substitutions_come_early(), "substitutions wait for more than what they are solved for"},
       {substitutions_are_found(), "linear rows are not the substitutions that they should be"},
       {points_alone_are_found(), "rods do not come after the ends that they should"}};
