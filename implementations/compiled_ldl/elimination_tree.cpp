@@ -195,14 +195,14 @@ Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vec
                int width, std::size_t most) {
   const Symbolic symbolic(graph, order, sizes, width, most);
   if (symbolic.fill() > most) return {};
-  Tree tree = symbolic.tree(Waiting::counts, Widening::is_free);
+  Tree tree = symbolic.tree(Waiting::counts, Widening::counts);
   const auto take = [&tree](Tree other) {
     if (other.cycles < tree.cycles) tree = std::move(other);
   };
   if (width != 1) {  // there are latencies and wide fronts
-    take(symbolic.tree(Waiting::is_filled, Widening::is_free));
-    take(symbolic.tree(Waiting::counts, Widening::counts));
     take(symbolic.tree(Waiting::is_filled, Widening::counts));
+    take(symbolic.tree(Waiting::counts, Widening::is_free));
+    take(symbolic.tree(Waiting::is_filled, Widening::is_free));
   }
   // Merged one by one, many narrow fronts never get there.
   const FrontTime time = front_time(std::accumulate(sizes.begin(), sizes.end(), 0), 0, 0, width);
