@@ -10,6 +10,7 @@
 #include "model_math/kinematics.hpp"
 #include "run/stretch.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/sample_models.hpp"
 
 namespace mbs {
 namespace {
@@ -76,15 +77,8 @@ TEST(Judge, TellsAnotherBranchFromALateMotion) {
   EXPECT_TRUE(late.starts_with("position error")) << late;
 }
 
-/// A mass on a spring along x, stretched by 0.5 m; `damping` in N s/m.
-Scene spring_mass(double damping) {
-  ModelData data;
-  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1.5, 0, 0}}};
-  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
-  data.force = data.initial_velocity = {0.0, 0.0};
-  data.springs.push_back({0, 1, 100.0, damping, 1.0, "spring"});
-  return {"oscillator", Model(std::move(data)), {}, {}};
-}
+/// Stretched by 0.5 m; `damping` in N s/m.
+Scene spring_mass(double damping) { return test::oscillator(100.0, damping, 1.0, 1.5); }
 
 State at(double x, double vx) { return {{x, 0}, {vx, 0}, {0, 0}, {}, 0.0}; }
 

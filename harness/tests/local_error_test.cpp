@@ -13,6 +13,7 @@
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/sample_models.hpp"
 
 namespace mbs {
 namespace {
@@ -341,19 +342,14 @@ TEST(LocalErrors, DoNotAddUpWhereDriversLeaveNoFreedom) {
   EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
 }
 
-/// A mass on a spring along x at 2 pi rad a `period` steps, in unit steps of a millisecond.
-Scene oscillator(double period) {
-  ModelData data;
-  data.points = {{"A", -1, {-10, 0, 0}}, {"B", 0, {1, 0, 0}}};
-  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
-  data.force = data.initial_velocity = {0.0, 0.0};
+/// At 2 pi rad a `period` steps, in unit steps of a millisecond.
+Scene spring_of_period(double period) {
   const double rate = 2 * std::acos(-1.0) / (period * 1e-3);
-  data.springs.push_back({0, 1, rate * rate, 0.0, 10.0, "spring"});
-  return {"oscillator", Model(std::move(data)), {}, {}};
+  return test::oscillator(rate * rate, 0.0, 10.0, 11.0);
 }
 
 TEST(LocalErrors, AMotionInStepWithTheJudgeIsSeen) {
-  const Scene scene = oscillator(32);
+  const Scene scene = spring_of_period(32);
   RunSettings settings;
   settings.step.step = 1e-3;
   settings.duration = 0.096;

@@ -114,15 +114,8 @@ TEST(Warnings, TellOfSingularStarts) {
             "");
 }
 
-/// 1 kg on a spring of 1e4 N/m along x, `damping` in N s/m.
-Model oscillating(double damping) {
-  ModelData data;
-  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
-  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
-  data.force = data.initial_velocity = {0.0, 0.0};
-  data.springs.push_back({0, 1, 1e4, damping, 1.0, "spring"});
-  return Model(std::move(data));
-}
+/// On 1e4 N/m; `damping` in N s/m.
+Model oscillating(double damping) { return test::oscillator(1e4, damping, 1.0, 1.0).model; }
 
 TEST(Warnings, TellOfStepsTooLongForSprings) {
   EXPECT_NEAR(shortest_period(oscillating(0.0)), 2 * std::numbers::pi / 100, 1e-15);

@@ -1,5 +1,7 @@
-// Models that no scene of the program's own gives: without constraints, and spatial.
+// Models that no scene of the program's own gives: without constraints, on a spring, and spatial.
 #pragma once
+
+#include <utility>
 
 #include "scene/scene.hpp"
 
@@ -13,6 +15,16 @@ inline Scene free_fall() {
   data.force = {0.0, -19.62, 0.0, -19.62};
   data.initial_velocity = {1.0, 0.0, -0.5, 1.0};
   return {"free fall", Model(std::move(data)), {}, {}};
+}
+
+/// 1 kg at x (m) on a spring along x from the origin, `rest` long (m) without force; N/m, N s/m.
+inline Scene oscillator(double stiffness, double damping, double rest, double x) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {x, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.springs.push_back({0, 1, stiffness, damping, rest, "spring"});
+  return {"oscillator", Model(std::move(data)), {}, {}};
 }
 
 /// A spherical pendulum AB with a unit vector BC at right angles to it, and a string from C to D,
