@@ -27,7 +27,7 @@ class Stepper final : public Simulation {
   bool factorize();                        // TODO: T; false: it was refused, or has a NaN
   void solve(std::vector<double>& right);  // TODO: T^-1 right in its place, with the last factors
   void correct(const std::vector<double>& delta);  // TODO: q', v', a' of the new q', Eq. (2)
-  void project();                                  // TODO: v', then a', Eq. (6)
+  void project();                                  // TODO: v', then a': step 3, for Eq. (6)
 
   const Model& model_;
   StepSettings settings_;
