@@ -180,6 +180,16 @@ void Constraints::evaluate_dots(const double* q) {
   }
 }
 
+void Constraints::multiply(const double* x, double* product) const {
+  for (const auto& [group, first] : groups_) group->contract(x, product + first);
+  for (int row = first_linear_, t = 0; row < count(); ++row) {
+    product[row] = 0.0;
+    for (; t < linear_begin_[row - first_linear_ + 1]; ++t) {
+      product[row] += linear_coefficient_[t] * x[linear_variable_[t]];
+    }
+  }
+}
+
 void Constraints::write_forces(const double* g, double* parts) const {
   for (const auto& [group, first] : groups_) {
     const double* of_group = g + first;

@@ -34,6 +34,8 @@ class Constraints {
   /// Values that drivers prescribe, at time t.
   void drive(double t);
   void evaluate(const double* q);
+  /// Phi_q x; x is zero at fixed points.
+  void multiply(const double* x, double* product) const;
   /// Phi_q^T g, in parts.
   void write_forces(const double* g, double* parts) const;
   /// factor Phi_q^T Phi_q of all rows but linear ones, in parts.

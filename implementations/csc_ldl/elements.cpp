@@ -161,9 +161,9 @@ void Elements::evaluate_geometry(const double* q) {
   Group& angles = angles_.group;
   for (int k = 0; k < angles.count; ++k) {
     const Components<dimension> u = difference<dimension>(angles, q, 0, k),
-                            w = difference<dimension>(angles, q, 1, k),
-                            z = axis_of<dimension>(angle_axis_[k], q), z_u = turned(z, u),
-                            z_w = turned(z, w);
+                                w = difference<dimension>(angles, q, 1, k),
+                                z = axis_of<dimension>(angle_axis_[k], q), z_u = turned(z, u),
+                                z_w = turned(z, w);
     const double u_u = dot(u, u), w_w = dot(w, w);
     for (int c = 0; c < dimension; ++c) {
       angles.gradient[c * angles.count + k] = -z_u[c] / u_u;
@@ -173,7 +173,7 @@ void Elements::evaluate_geometry(const double* q) {
   }
   for (int k = 0; k < couples_.count; ++k) {
     const Components<dimension> w = difference<dimension>(couples_, q, 0, k),
-                            z_w = turned(axis_of<dimension>(couple_axis_[k], q), w);
+                                z_w = turned(axis_of<dimension>(couple_axis_[k], q), w);
     const double factor = -torque_[k] / dot(w, w);
     for (int c = 0; c < dimension; ++c) couples_.gradient[c * couples_.count + k] = factor * z_w[c];
   }
@@ -209,25 +209,6 @@ void Elements::evaluate_forces(Family& family, bool along_lines) {
       family.slope[k] -= geometric_[k];  // of p (I - e e^T)
     }
   }
-}
-
-void Elements::multiply(const double* x, double* force_parts) {
-  for (Family* family : {&lines_, &angles_}) {
-    if (family->group.count == 0) continue;
-    family->group.contract(x, family->rate.data());
-    family->group.write_forces([family](int k) { return family->slope[k] * family->rate[k]; },
-                               force_parts);
-  }
-  const int count = lines_.group.count;
-  for (int c = 0; c < lines_.group.components; ++c) {
-    double* part = force_parts + 2 * c * count;
-    for (int k = 0; k < count; ++k) {
-      const double force = geometric_[k] * lines_.group.difference(x, c, k);
-      part[k] += force;
-      part[count + k] -= force;
-    }
-  }
-  couples_.write_forces([](int) { return 0.0; }, force_parts);
 }
 
 }  // namespace mbs::csc_ldl

@@ -10,7 +10,7 @@
 
 namespace mbs::csc_ldl {
 
-/// Forces and their part (dt/2) C + (dt^2/4) K of T_0, which is kept from evaluate() to evaluate().
+/// Forces and their part (dt/2) C + (dt^2/4) K of T_0.
 class Elements {
  public:
   Elements(const Model& model, const Coordinates& at, double step);
@@ -29,8 +29,6 @@ class Elements {
   void drive(double t);
   /// Parts of -Q and of T_0; v are velocities of all points.
   void evaluate(const double* q, const double* v, double* force_parts, double* matrix_parts);
-  /// What the kept part of T_0 gives times x, in parts of forces. x is zero at fixed points.
-  void multiply(const double* x, double* force_parts);
 
  private:
   struct Spring {

@@ -44,22 +44,4 @@ void Mass::multiply(const double* x, double* y) const {
   }
 }
 
-void Mass::multiply(const double* x1, double* y1, const double* x2, double* y2) const {
-  const int *row = row_.data(), *col = col_.data();
-  const double* value = value_.data();
-  for (const Run& run : runs_) {
-    with_constant(run.entries, [&](auto entries) {
-      for (int r = 0; r < run.rows; ++r, col += entries, value += entries) {
-        double sum1 = 0.0, sum2 = 0.0;
-        for (int k = 0; k < entries; ++k) {
-          sum1 += value[k] * x1[col[k]];
-          sum2 += value[k] * x2[col[k]];
-        }
-        y1[*row] = sum1;
-        y2[*row++] = sum2;
-      }
-    });
-  }
-}
-
 }  // namespace mbs::csc_ldl

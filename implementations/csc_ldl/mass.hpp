@@ -1,4 +1,4 @@
-// The mass matrix as an operator on vectors.
+// The mass matrix as an operator on a vector.
 #pragma once
 
 #include <span>
@@ -16,8 +16,6 @@ class Mass {
 
   /// y = M x.
   void multiply(const double* x, double* y) const;
-  /// y1 = M x1 and y2 = M x2, reading M once.
-  void multiply(const double* x1, double* y1, const double* x2, double* y2) const;
 
  private:
   struct Run {

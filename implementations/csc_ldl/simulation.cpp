@@ -80,6 +80,9 @@ StepOutcome LdlSimulation::do_step() {
     if (!factorize()) return {StepStatus::factorization_failed, outcome.passes};
     solve(top_);  // Eq. (4) or (12)
     if (correct()) outcome.status = StepStatus::converged;
+    const bool is_last =
+        outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (is_last && settings_.projections != Projections::none) prepare_projections();
     evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
     update_multipliers();
   }
@@ -226,53 +229,51 @@ const double* LdlSimulation::velocities_of_all_points() {
   return all_v_.data();
 }
 
-// The part of T_0 x that springs and laws give.
-void LdlSimulation::add_elements(const double* x, Vector& right) {
-  elements_.multiply(x, element_parts_.data());
-  element_forces_.apply(right.data(), element_parts_.data(), right.data());
+// What x = v* or a* has on the right of Eq. (6) or (13), each solved for what it changes. Phi_q is
+// still the one in T.
+void LdlSimulation::prepare_projection(const Vector& x, Vector& top, Vector& rate) {
+  constraints_.multiply(x.data(), rate.data());
+  std::ranges::fill(top, 0.0);
+  if (!saddle_point_) add_constraints(rate, top);
 }
 
-// What constraints put on the right of Eq. (6) or (13); g_ is Phi_t or the part of Phi's second
-// derivative that is free of a.
-void LdlSimulation::add_constraints(Vector& right) {
-  if (saddle_point_) {
-    for (int k = 0; k < m_; ++k) bottom_[k] = -g_[k];
-    return;
-  }
+// -(dt^2/4) alpha Phi_q^T rate.
+void LdlSimulation::add_constraints(const Vector& rate, Vector& top) {
   const double factor = -dt_ * dt_ / 4 * alpha_;
-  for (int k = 0; k < m_; ++k) g_[k] *= factor;
+  for (int k = 0; k < m_; ++k) g_[k] = factor * rate[k];
   constraints_.write_forces(g_.data(), row_parts_.data());
-  row_forces_.apply(right.data(), row_parts_.data(), right.data());
+  row_forces_.apply(top.data(), row_parts_.data(), top.data());
 }
 
-// Eq. (6) or (13), with the last pass's factors, C and K.
+// Before Phi_q is evaluated anew.
+void LdlSimulation::prepare_projections() {
+  phases_.enter(Phase::projection);
+  prepare_projection(v_, top_v_, rate_v_);
+  if (settings_.projections == Projections::both) prepare_projection(a_, top_a_, rate_a_);
+}
+
+// Eq. (6) or (13), with the last pass's factors.
 void LdlSimulation::project() {
   phases_.enter(Phase::projection);
-  const bool both = settings_.projections == Projections::both;
-  if (both) {
-    mass_.multiply(v_.data(), top_.data(), a_.data(), top_a_.data());
-  } else {
-    mass_.multiply(v_.data(), top_.data());
-  }
-  if (!elements_.empty()) add_elements(v_.data(), top_);
-  if (constraints_.are_driven()) {
-    constraints_.time_derivative(driven_v_.data(), g_.data());
-    add_constraints(top_);
-  } else if (saddle_point_) {
-    std::ranges::fill(bottom_, 0.0);
-  }
-  solve(top_);
-  phases_.enter(Phase::projection);
-  std::copy_n(top_.begin(), n_, v_.begin());
-  if (!both) return;
+  if (constraints_.are_driven()) constraints_.time_derivative(driven_v_.data(), rate_.data());
+  project(v_, top_v_, rate_v_, constraints_.are_driven());
+  if (settings_.projections == Projections::velocity) return;
+  constraints_.curvature(velocities_of_all_points(), rate_.data());
+  if (constraints_.are_driven()) constraints_.add_driven_curvature(driven_a_.data(), rate_.data());
+  project(a_, top_a_, rate_a_, true);
+}
 
-  if (!elements_.empty()) add_elements(a_.data(), top_a_);
-  constraints_.curvature(velocities_of_all_points(), g_.data());
-  if (constraints_.are_driven()) constraints_.add_driven_curvature(driven_a_.data(), g_.data());
-  add_constraints(top_a_);
-  solve(top_a_);
+// x += what the projection changes; rate_, if it has one, is Phi_t or the part of Phi's second
+// derivative that is free of a.
+void LdlSimulation::project(Vector& x, Vector& top, const Vector& rate, bool has_rate) {
+  if (saddle_point_) {
+    for (int k = 0; k < m_; ++k) bottom_[k] = -rate[k] - (has_rate ? rate_[k] : 0.0);
+  } else if (has_rate) {
+    add_constraints(rate_, top);
+  }
+  solve(top);
   phases_.enter(Phase::projection);
-  std::copy_n(top_a_.begin(), n_, a_.begin());
+  for (int i = 0; i < n_; ++i) x[i] += top[i];
 }
 
 }  // namespace mbs::csc_ldl

@@ -1,6 +1,7 @@
 // The paper's step in plain loops; equations are those of paper/README.md. Start at do_step().
 #include "simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mbs::minimal_dense {
@@ -25,6 +26,7 @@ StepOutcome LoopsSimulation::do_step() {
     if (!factorize_tangent()) return {StepStatus::factorization_failed, outcome.passes};
     solve(Delta_q_);  // Eq. (4)
     if (correct()) outcome.status = StepStatus::converged;
+    J_ = Phi_q_;             // the one in T: if this is the last pass, the projections need it
     evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
     phases_.enter(Phase::other);
     for (long k = 0; k < m_; ++k) lambda_[k] += alpha_ * Phi_[k];  // Eq. (1), converged or not
@@ -140,36 +142,42 @@ bool LoopsSimulation::correct() {
   return converged;
 }
 
-// Eq. (6), with the last pass's L; C = K = 0 and, as nothing is driven, Phi_t = Phi_dot_t = 0.
+// Eq. (6), with the last pass's L and J, solved for what it changes.
 void LoopsSimulation::project() {
-  phases_.enter(Phase::projection);
-  for (long i = 0; i < n_; ++i) {  // T v' = M v*
-    projected_[i] = 0.0;
-    for (long j = 0; j < n_; ++j) projected_[i] += M_[i * n_ + j] * v_[j];
-  }
-  solve(projected_);
-  v_ = projected_;
+  std::ranges::fill(rate_, 0.0);  // Phi_t: nothing is driven
+  project(v_);
   if (settings_.projections == Projections::velocity) return;
 
-  phases_.enter(Phase::projection);
   for (long k = 0; k < m_; ++k) {  // Phi_dot_q v' by Eq. (7), with the v' just projected
     const Point& a = model_.points()[model_.dot_constraints()[k].a];
     const Point& b = model_.points()[model_.dot_constraints()[k].b];
-    Phi_dot_q_v_[k] = 0.0;
+    rate_[k] = 0.0;
     for (int axis = 0; axis < 2; ++axis) {
       const double v_a = a.is_fixed() ? 0.0 : v_[a.offset + axis];
       const double v_b = b.is_fixed() ? 0.0 : v_[b.offset + axis];
-      Phi_dot_q_v_[k] += 2 * (v_a - v_b) * (v_a - v_b);
+      rate_[k] += 2 * (v_a - v_b) * (v_a - v_b);
     }
   }
-  for (long i = 0; i < n_; ++i) {  // T a' = M a* - (dt^2/4) alpha Phi_q^T (Phi_dot_q v')
-    double sum = 0.0;
-    for (long k = 0; k < m_; ++k) sum += Phi_q_[k * n_ + i] * Phi_dot_q_v_[k];
-    projected_[i] = -dt_ * dt_ / 4 * alpha_ * sum;
-    for (long j = 0; j < n_; ++j) projected_[i] += M_[i * n_ + j] * a_[j];
+  project(a_);
+}
+
+// T change = -(dt^2/4) alpha (J^T J x + Phi_q^T rate), x += change; x is v* or a*.
+void LoopsSimulation::project(Vector& x) {
+  phases_.enter(Phase::projection);
+  for (long k = 0; k < m_; ++k) {
+    J_x_[k] = 0.0;
+    for (long j = 0; j < n_; ++j) J_x_[k] += J_[k * n_ + j] * x[j];
   }
-  solve(projected_);
-  a_ = projected_;
+  for (long i = 0; i < n_; ++i) {
+    double sum = 0.0;
+    for (long k = 0; k < m_; ++k) {
+      sum += J_[k * n_ + i] * J_x_[k] + Phi_q_[k * n_ + i] * rate_[k];
+    }
+    change_[i] = -dt_ * dt_ / 4 * alpha_ * sum;
+  }
+  solve(change_);
+  phases_.enter(Phase::projection);
+  for (long i = 0; i < n_; ++i) x[i] += change_[i];
 }
 
 }  // namespace mbs::minimal_dense

@@ -27,6 +27,7 @@ class LoopsSimulation final : public Simulation {
   void solve(Vector& x);
   [[nodiscard]] bool correct();
   void project();
+  void project(Vector& x);
 
   const Model& model_;
   const StepSettings settings_;
@@ -41,10 +42,11 @@ class LoopsSimulation final : public Simulation {
   Vector M_ = Vector(n_ * n_);                        // both halves
   const std::span<const double> Q_ = model_.force();  // constant, as gravity is all there is
   Vector Phi_ = Vector(m_), Phi_q_ = Vector(m_ * n_);
-  Vector Phi_dot_q_v_ = Vector(m_);                   // the time derivative of Phi_q, times v
+  Vector J_ = Vector(m_ * n_), J_x_ = Vector(m_);     // Phi_q in T; times v* or a*
+  Vector rate_ = Vector(m_);                          // Phi_t, or Phi_dot_q v': Eq. (6)
   Vector T_ = Vector(n_ * n_), L_ = Vector(n_ * n_);  // lower halves; T = L L^T
   Vector Delta_q_ = Vector(n_);                       // -f, then the solution of Eq. (4)
-  Vector projected_ = Vector(n_);                     // right-hand side of Eq. (6), then its solution
+  Vector change_ = Vector(n_);                        // of v' or a', Eq. (6)
 };
 
 }  // namespace mbs::minimal_dense
