@@ -1,4 +1,4 @@
-// Products of M, Phi_q and the forces with vectors: what right-hand sides are made of.
+// Products of M and Phi_q with vectors, and the forces: what right-hand sides are made of.
 #include "assembly.hpp"
 
 #include <algorithm>
@@ -19,19 +19,26 @@ void Assembly::balance(const double* q, const double* v, const double* a, const 
   }
 }
 
-void Assembly::subtract_reaction(double factor, const double* weights, double* right) const {
+void Assembly::add_rates(const double* x, double* rates) const {
+  const int* start = jacobian_pattern_.start.data();
+  const int* row = jacobian_pattern_.row.data();
+  for (int j = 0; j < variables_; ++j) {
+    const double x_j = x[j];
+    for (int k = start[j]; k < start[j + 1]; ++k) rates[row[k]] += matrix_jacobian_[k] * x_j;
+  }
+}
+
+void Assembly::react(double factor, const double* rates, const double* weights,
+                     double* right) const {
   const int* start = jacobian_pattern_.start.data();
   const int* row = jacobian_pattern_.row.data();
   for (int j = 0; j < variables_; ++j) {
     double sum = 0.0;
-    for (int k = start[j]; k < start[j + 1]; ++k) sum += jacobian_[k] * weights[row[k]];
-    right[j] -= factor * sum;
+    for (int k = start[j]; k < start[j + 1]; ++k) {
+      sum += matrix_jacobian_[k] * rates[row[k]] + jacobian_[k] * weights[row[k]];
+    }
+    right[j] = -factor * sum;
   }
-}
-
-void Assembly::multiply_inertia(const double* x, double* y) const {
-  multiply_mass(x, y);
-  if (!forces_.empty()) forces_.multiply(x, y);
 }
 
 /// y = M x; each stored entry serves its row and its column.

@@ -47,10 +47,10 @@ class Assembly {
   void balance(const double* q, const double* v, const double* a, const double* weights,
                double* right);
   [[nodiscard]] const Forces& forces() const { return forces_; }
-  /// y (n) = [M + (Delta t / 2) C + (Delta t^2 / 4) K] x (n), with the forces evaluated last.
-  void multiply_inertia(const double* x, double* y) const;
-  /// right (n) -= factor Phi_q' weights (m), with the Phi_q evaluated last.
-  void subtract_reaction(double factor, const double* weights, double* right) const;
+  /// rates (m) += J x (n). J is the Phi_q evaluated last but one: after a pass, that in its matrix.
+  void add_rates(const double* x, double* rates) const;
+  /// right (n) = -factor (J' rates + Phi_q' weights); both are of length m.
+  void react(double factor, const double* rates, const double* weights, double* right) const;
 
  private:
   /// Offsets of the two points in an extended vector; `row` of Phi.
@@ -105,8 +105,9 @@ class Assembly {
 
   // Phi_q by columns. write_order_ lists the places in jacobian_ in the order in which evaluation
   // writes them; the entry behind the last true one takes what nobody wants (fixed points).
+  // Evaluation first swaps the values with those of J; linear rows are in both.
   ColumnPattern jacobian_pattern_;
-  std::vector<double> jacobian_;
+  std::vector<double> jacobian_, matrix_jacobian_;
   std::vector<int> write_order_;
 
   ColumnPattern mass_pattern_;

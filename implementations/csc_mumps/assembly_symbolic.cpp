@@ -130,6 +130,7 @@ void Assembly::Builder::lower_linear() {
     self_.linear_value_.push_back(linear.value);
     ++row;
   }
+  self_.matrix_jacobian_ = self_.jacobian_;
 }
 
 void Assembly::Builder::build_mass() {

@@ -6,6 +6,7 @@
 namespace mbs::csc_mumps {
 
 void Assembly::evaluate_constraints(const double* q_extended) {
+  jacobian_.swap(matrix_jacobian_);
   dimension_ == 2 ? evaluate_constraints_in<2>(q_extended) : evaluate_constraints_in<3>(q_extended);
   if (!linear_value_.empty()) evaluate_linear(q_extended);
 }

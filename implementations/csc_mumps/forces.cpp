@@ -1,4 +1,4 @@
-// Evaluation of the force elements, and their products with T's values and with vectors.
+// Evaluation of the force elements, and their share of T's values.
 #include "forces.hpp"
 
 #include <algorithm>
@@ -136,24 +136,6 @@ void Forces::add_to_tangent(const int* place, double* tangent) const {
     for (int i = 0; i < count; ++i) {
       const double factor = rank_[row] * g[i];
       for (int j = 0; j <= i; ++j) tangent[*place++] += factor * g[j];  // Eq. (5)
-    }
-  }
-}
-
-void Forces::multiply(const double* x, double* y) const {
-  for (int row = 0; row < coupling_rows(); ++row) {
-    double sum = 0.0;
-    for (int k = start_[row]; k < start_[row + 1]; ++k) sum += gradient_[k] * x[column_[k]];
-    apply(row, rank_[row] * sum, y);
-  }
-  for (std::size_t row = 0; row < springs_.size(); ++row) {
-    const int* column = column_.data() + start_[row];
-    const int count = start_[row + 1] - start_[row];
-    const double amount = transverse_[row];
-    for (int i = 0; i < count; ++i) y[column[i]] += amount * x[column[i]];
-    for (int i = dimension_; i < count; ++i) {
-      y[column[i]] -= amount * x[column[i - dimension_]];
-      y[column[i - dimension_]] -= amount * x[column[i]];
     }
   }
 }

@@ -1,4 +1,4 @@
-// Springs, torsion springs and couples: Q, and their share of T and of Eq. (6), Eq. (11).
+// Springs, torsion springs and couples: Q, and their share of T, Eq. (11).
 #pragma once
 
 #include <initializer_list>
@@ -35,8 +35,6 @@ class Forces {
   /// tangent += (Delta t / 2) C + (Delta t^2 / 4) K, with the gradients evaluated last; `place` has
   /// the place in it of each entry, in the order of visit_couplings().
   void add_to_tangent(const int* place, double* tangent) const;
-  /// y (n) += [(Delta t / 2) C + (Delta t^2 / 4) K] x (n), with the gradients evaluated last.
-  void multiply(const double* x, double* y) const;
 
  private:
   // Points by their offsets in an extended vector.

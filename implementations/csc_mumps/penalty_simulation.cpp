@@ -41,26 +41,12 @@ void PenaltySimulation::update_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
 }
 
-bool PenaltySimulation::project() {
-  if (settings_.projections == Projections::none) return true;
-  phases_.enter(Phase::projection);
-  assembly_.multiply_inertia(v_.data(), x_.data());  // Eq. (6)
-  if (assembly_.is_driven()) {
-    assembly_.velocity_terms(q_.data(), weights_.data());
-    assembly_.subtract_reaction(reaction_factor_, weights_.data(), x_.data());
-  }
+bool PenaltySimulation::solve_projection(const double* rates) {
+  std::fill(weights_.begin(), weights_.end(), 0.0);
+  assembly_.add_rates(rates, weights_.data());
+  assembly_.react(reaction_factor_, weights_.data(), free_part_.data(), x_.data());
   phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  phases_.enter(Phase::projection);
-  std::copy(x_.begin(), x_.end(), v_.begin());
-  if (settings_.projections == Projections::velocity) return true;
-  assembly_.acceleration_terms(q_.data(), v_.data(), weights_.data());
-  assembly_.multiply_inertia(a_.data(), x_.data());  // Eq. (6)
-  assembly_.subtract_reaction(reaction_factor_, weights_.data(), x_.data());
-  phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  a_.swap(x_);
-  return true;
+  return solver_.solve(x_);  // Eq. (6)
 }
 
 }  // namespace mbs::csc_mumps

@@ -14,8 +14,7 @@ SaddlePointSimulation::SaddlePointSimulation(const Model& model, const StepSetti
 bool SaddlePointSimulation::solve_newton() {
   phases_.enter(Phase::evaluation);
   assembly_.balance(q_.data(), v_.data(), a_.data(), lambda_.data(), x_.data());
-  std::copy(assembly_.phi().begin(), assembly_.phi().end(), lower());
-  negate_lower();
+  std::transform(assembly_.phi().begin(), assembly_.phi().end(), lower(), std::negate<>());
   phases_.enter(Phase::assembly);
   if (!matrix_.evaluate()) return false;
   phases_.enter(Phase::factorization);     // with the solution in it: one call does both
@@ -27,28 +26,12 @@ void SaddlePointSimulation::update_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += acceleration_factor_ * mu[i];
 }
 
-bool SaddlePointSimulation::project() {
-  if (settings_.projections == Projections::none) return true;
-  phases_.enter(Phase::projection);
-  assembly_.multiply_inertia(v_.data(), x_.data());  // Eq. (13)
-  assembly_.velocity_terms(q_.data(), lower());
-  negate_lower();
+bool SaddlePointSimulation::solve_projection(const double* rates) {
+  std::fill_n(x_.begin(), variables_, 0.0);
+  assembly_.add_rates(rates, free_part_.data());
+  std::transform(free_part_.begin(), free_part_.end(), lower(), std::negate<>());
   phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  phases_.enter(Phase::projection);
-  std::copy_n(x_.begin(), variables_, v_.begin());
-  if (settings_.projections == Projections::velocity) return true;
-  assembly_.multiply_inertia(a_.data(), x_.data());  // Eq. (13)
-  assembly_.acceleration_terms(q_.data(), v_.data(), lower());
-  negate_lower();
-  phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  std::copy_n(x_.begin(), variables_, a_.begin());
-  return true;
-}
-
-void SaddlePointSimulation::negate_lower() {
-  std::transform(lower(), lower() + lambda_.size(), lower(), std::negate<>());
+  return solver_.solve(x_);  // Eq. (13)
 }
 
 }  // namespace mbs::csc_mumps

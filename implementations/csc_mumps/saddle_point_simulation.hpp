@@ -14,12 +14,11 @@ class SaddlePointSimulation : public CscMumpsSimulation {
  protected:
   bool solve_newton() override;
   void update_multipliers() override;
-  bool project() override;
+  bool solve_projection(const double* rates) override;
 
  private:
   /// Where x_ has what belongs to the constraints.
   [[nodiscard]] double* lower() { return x_.data() + variables_; }
-  void negate_lower();
 
   SaddlePointMatrix matrix_;
   MultifrontalSolver solver_;

@@ -1,4 +1,4 @@
-// Prediction, Newton passes, correction; which form they serve is chosen here, once.
+// Prediction, Newton passes, correction, projections; which form they serve is chosen here, once.
 #include "simulation.hpp"
 
 #include <algorithm>
@@ -27,6 +27,7 @@ CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& s
       assembly_(model, settings.step),
       a_(variables_, 0.0),
       lambda_(model.constraints(), 0.0),
+      free_part_(model.constraints(), 0.0),
       x_(unknowns, 0.0) {
   const std::span<const double> fixed = assembly_.fixed_coordinates();
   q_.assign(model.initial_position().begin(), model.initial_position().end());
@@ -100,6 +101,24 @@ bool CscMumpsSimulation::correct() {
     a_[i] += acceleration_factor_ * change;  // Eq. (2)
   }
   return outside == 0;
+}
+
+/// Corrects v_, then a_, as far as asked for. False if the solver gave up.
+bool CscMumpsSimulation::project() {
+  if (settings_.projections == Projections::none) return true;
+  phases_.enter(Phase::projection);
+  assembly_.velocity_terms(q_.data(), free_part_.data());
+  if (!change(v_)) return false;
+  if (settings_.projections == Projections::velocity) return true;
+  assembly_.acceleration_terms(q_.data(), v_.data(), free_part_.data());
+  return change(a_);
+}
+
+bool CscMumpsSimulation::change(std::vector<double>& rates) {
+  if (!solve_projection(rates.data())) return false;
+  phases_.enter(Phase::projection);
+  for (int i = 0; i < variables_; ++i) rates[i] += x_[i];
+  return true;
 }
 
 }  // namespace mbs::csc_mumps

@@ -15,7 +15,7 @@ namespace mbs::csc_mumps {
 std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings,
                                             Tuning tuning);
 
-/// Prediction, the loop of passes, the correction. What a pass solves is up to the form.
+/// Prediction, the loop of passes, the correction, projections. What these solve is up to the form.
 class CscMumpsSimulation : public Simulation {
  public:
   /// `unknowns`: order of the form's matrix, n or more.
@@ -31,9 +31,9 @@ class CscMumpsSimulation : public Simulation {
   virtual bool solve_newton() = 0;
   /// After the correction, with the constraints evaluated at the new q_.
   virtual void update_multipliers() = 0;
-  /// Solves for v_, then for a_, as far as asked for, with the factors of the last pass. False if
-  /// the solver gave up.
-  virtual bool project() = 0;
+  /// Makes x_ begin with what projection changes `rates` by, v_ or a_, with the factors of the last
+  /// pass; may overwrite free_part_. False if the solver gave up.
+  virtual bool solve_projection(const double* rates) = 0;
 
   const int variables_;
   const StepSettings settings_;
@@ -42,6 +42,7 @@ class CscMumpsSimulation : public Simulation {
   Assembly assembly_;
   std::vector<double> q_, v_;       // extended; v_ ends in driven velocities, or zeros
   std::vector<double> a_, lambda_;  // n, m
+  std::vector<double> free_part_;   // m; Phi_t for v_, dPhi_q/dt v + dPhi_t/dt for a_
   std::vector<double> x_;           // unknowns; handed to the solver and got back from it
 
  private:
@@ -51,6 +52,8 @@ class CscMumpsSimulation : public Simulation {
   void predict();
   Pass newton_pass();
   bool correct();
+  bool project();
+  bool change(std::vector<double>& rates);
 };
 
 }  // namespace mbs::csc_mumps
