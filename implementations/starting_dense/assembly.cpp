@@ -1,6 +1,8 @@
 // Full dense products, one after another.
 #include "assembly.hpp"
 
+#include <span>
+
 namespace mbs::starting_dense {
 
 Assembly::Assembly(const Model& model, const StepSettings& settings)
@@ -11,7 +13,8 @@ Assembly::Assembly(const Model& model, const StepSettings& settings)
       constraints_(model, layout_),
       forces_(model, layout_, settings.step),
       drivers_(model, layout_),
-      product_(model.variables()) {
+      product_(model.variables()),
+      rates_(model.constraints()) {
   for (const MassEntry& entry : model.mass()) {
     M_(entry.row, entry.col) = entry.value;
     M_(entry.col, entry.row) = entry.value;
@@ -33,24 +36,21 @@ void Assembly::tangent(Matrix& result) {
   forces_.add_to(result);  // Eq. (5)
 }
 
-void Assembly::velocity_right(const Vector& v, Vector& right) {
-  multiply(v, right);
-  if (driven()) subtract_transposed(constraints_.time_derivative(drivers_), right);  // Eq. (6)
+void Assembly::normal_product(const Vector& x, Vector& right) {
+  matmul(constraints_.Phi_q(), std::span(x).first(layout_.variables), rates_);
+  matmul(constraints_.Phi_q_transposed(), rates_, right);
 }
 
-void Assembly::acceleration_right(const Vector& a, const Vector& v, Vector& right) {
-  multiply(a, right);
-  subtract_transposed(constraints_.second_derivative(v, drivers_), right);  // Eq. (6)
+void Assembly::velocity_right(Vector& right) {
+  const Matrix& Phi_q_transposed = constraints_.Phi_q_transposed();
+  if (driven()) add_product(Phi_q_transposed, 0, constraints_.time_derivative(drivers_), right);
+  for (double& entry : right) entry *= -factor_;  // Eq. (6)
 }
 
-void Assembly::multiply(const Vector& x, Vector& right) {
-  matmul(M_, x, right);
-  forces_.add_product(x, right);
-}
-
-void Assembly::subtract_transposed(const Vector& y, Vector& right) {
-  matmul(constraints_.Phi_q_transposed(), y, product_);
-  for (std::size_t i = 0; i < right.size(); ++i) right[i] -= factor_ * product_[i];
+void Assembly::acceleration_right(const Vector& v, Vector& right) {
+  const Vector& second_derivative = constraints_.second_derivative(v, drivers_);
+  add_product(constraints_.Phi_q_transposed(), 0, second_derivative, right);
+  for (double& entry : right) entry *= -factor_;  // Eq. (6)
 }
 
 }  // namespace mbs::starting_dense

@@ -38,17 +38,14 @@ class Assembly {
   void residual(const Vector& a, const Vector& multipliers, Vector& right);
   /// result (n x n) = M + dt/2 C + dt^2/4 (alpha Phi_q^T Phi_q + K).
   void tangent(Matrix& result);
-  /// right (n): of the velocities in Eq. (6).
-  void velocity_right(const Vector& v, Vector& right);
-  /// right (n): of the accelerations in Eq. (6), with a (n) and the projected v.
-  void acceleration_right(const Vector& a, const Vector& v, Vector& right);
+  /// right (n) = Phi_q^T Phi_q x, with the first n entries of x.
+  void normal_product(const Vector& x, Vector& right);
+  /// right (n), of Eq. (6) for v' - v*. J^T J v* goes in, with J the Phi_q of tangent().
+  void velocity_right(Vector& right);
+  /// The same for a' - a*, with the projected v.
+  void acceleration_right(const Vector& v, Vector& right);
 
  private:
-  /// right (n) = (M + dt/2 C + dt^2/4 K) x, with the first n entries of x.
-  void multiply(const Vector& x, Vector& right);
-  /// right (n) -= dt^2/4 alpha Phi_q^T y, with y (m).
-  void subtract_transposed(const Vector& y, Vector& right);
-
   const Layout layout_;
   const double factor_;  ///< dt^2/4 alpha
   Matrix M_;
@@ -57,6 +54,7 @@ class Assembly {
   Forces forces_;
   Drivers drivers_;
   Vector product_;  ///< n
+  Vector rates_;    ///< Phi_q x of normal_product(), m
 };
 
 }  // namespace mbs::starting_dense

@@ -119,26 +119,4 @@ void Forces::add_block(const Element& element, const End& row, const End& col,
   }
 }
 
-void Forces::add_product(const Vector& x, Vector& right) const {
-  for (std::size_t i = 0; i < torsions_end_; ++i) {
-    const Element& element = elements_[i];
-    double along = 0.0;  // g^T x
-    Vector3 between{};   // x_a - x_b, of free points
-    for (int k = element.ends_begin; k < element.ends_end; ++k) {
-      const End& end = ends_[k];
-      for (int y = 0; y < dimension_; ++y) {
-        along += end.g[y] * x[end.at + y];
-        between[y] += end.ab * x[end.at + y];
-      }
-    }
-    for (int k = element.ends_begin; k < element.ends_end; ++k) {
-      const End& end = ends_[k];
-      for (int y = 0; y < dimension_; ++y) {
-        right[end.at + y] +=
-            element.rank_one * along * end.g[y] + element.isotropic * end.ab * between[y];
-      }
-    }
-  }
-}
-
 }  // namespace mbs::starting_dense

@@ -17,7 +17,6 @@ namespace mbs::starting_dense {
 ///   forces.evaluate(q, v);        // at the beginning of a pass; the others use these values
 ///   forces.subtract_from(right);
 ///   forces.add_to(tangent);
-///   forces.add_product(x, right);
 class Forces {
  public:
   /// `step` is Delta t, s.
@@ -29,8 +28,6 @@ class Forces {
   void subtract_from(Vector& right) const;
   /// tangent (n x n) += dt/2 C + dt^2/4 K.
   void add_to(Matrix& tangent) const;
-  /// right (n) += (dt/2 C + dt^2/4 K) x, with the first n entries of x.
-  void add_product(const Vector& x, Vector& right) const;
 
  private:
   /// One free point of an element, its shares in the differences (see Share), and the gradient g of

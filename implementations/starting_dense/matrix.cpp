@@ -34,8 +34,8 @@ void transpose(const Matrix& matrix, Matrix& result) {
   }
 }
 
-void matmul(const Matrix& matrix, const Vector& x, Vector& result) {
-  multiply(matrix.rows(), matrix.cols(), matrix.data(), x.data(), result.data());
+void matmul(const Matrix& matrix, std::span<const double> x, Vector& result) {
+  multiply(matrix.rows(), static_cast<int>(x.size()), matrix.data(), x.data(), result.data());
 }
 
 void add_product(const Matrix& matrix, int first, const Vector& x, Vector& result) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace mbs::starting_dense {
@@ -38,9 +39,9 @@ using Vector = std::vector<double>;
 /// result (c x r) = transposed first c columns of `matrix` (r x c or wider). The two are distinct.
 void transpose(const Matrix& matrix, Matrix& result);
 
-/// result (r) = matrix (r x c) times the first c entries of x, column after column. `result` is not
-/// `x`.
-void matmul(const Matrix& matrix, const Vector& x, Vector& result);
+/// result (r) = columns 0, 1, ... of `matrix` (r x c) times x, one column an entry of x, column
+/// after column. `result` is not `x`.
+void matmul(const Matrix& matrix, std::span<const double> x, Vector& result);
 
 /// result (r) += columns first, first + 1, ... of `matrix` (r x c) times x, one column an entry of
 /// x.

@@ -17,7 +17,9 @@ DenseSimulation::DenseSimulation(const Model& model, const StepSettings& setting
       a_(n_),
       lambda_(model.constraints()),
       multipliers_(model.constraints()),
-      solution_(n_) {
+      solution_(n_),
+      velocity_change_(n_),
+      acceleration_change_(n_) {
   std::copy(model.initial_velocity().begin(), model.initial_velocity().end(), v_.begin());
 }
 
@@ -42,16 +44,19 @@ StepOutcome DenseSimulation::do_step() {
   phases_.enter(Phase::evaluation);
   if (assembly_.driven()) assembly_.drive(time(), q_, v_);
   assembly_.evaluate(q_);
-  bool converged = false;
-  while (!converged && outcome.passes < settings_.max_passes) {
+  for (bool last = false; !last;) {
     ++outcome.passes;
+    bool converged = false;
     if (!pass(converged)) {
       outcome.status = StepStatus::factorization_failed;
       phases_.enter(Phase::other);
       return outcome;
     }
+    if (converged) outcome.status = StepStatus::converged;
+    last = converged || outcome.passes == settings_.max_passes;
+    if (last) start_projections();
+    update_multipliers();
   }
-  if (converged) outcome.status = StepStatus::converged;
   project();
   phases_.enter(Phase::other);
   return outcome;
@@ -86,12 +91,6 @@ bool DenseSimulation::pass(bool& converged) {
   solver_.solve(solution_);  // Eq. (4)
   phases_.enter(Phase::other);
   apply_increment(converged);
-  phases_.enter(Phase::evaluation);
-  assembly_.evaluate(q_);
-  phases_.enter(Phase::other);
-  for (std::size_t i = 0; i < lambda_.size(); ++i) {
-    lambda_[i] += settings_.penalty * phi[i];  // Eq. (1)
-  }
   return true;
 }
 
@@ -108,19 +107,37 @@ void DenseSimulation::apply_increment(bool& converged) {
   }
 }
 
+void DenseSimulation::update_multipliers() {
+  phases_.enter(Phase::evaluation);
+  assembly_.evaluate(q_);
+  phases_.enter(Phase::other);
+  const Vector& phi = assembly_.phi();
+  for (std::size_t i = 0; i < lambda_.size(); ++i) {
+    lambda_[i] += settings_.penalty * phi[i];  // Eq. (1)
+  }
+}
+
+void DenseSimulation::start_projections() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  assembly_.normal_product(v_, velocity_change_);
+  if (settings_.projections == Projections::velocity) return;
+  assembly_.normal_product(a_, acceleration_change_);
+}
+
 void DenseSimulation::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.velocity_right(v_, solution_);  // Eq. (6), velocities
+  assembly_.velocity_right(velocity_change_);  // Eq. (6), velocities
   phases_.enter(Phase::solve);
-  solver_.solve(solution_);
-  std::copy_n(solution_.begin(), n_, v_.begin());
+  solver_.solve(velocity_change_);
+  for (int i = 0; i < n_; ++i) v_[i] += velocity_change_[i];
   if (settings_.projections == Projections::velocity) return;
   phases_.enter(Phase::projection);
-  assembly_.acceleration_right(a_, v_, solution_);  // Eq. (6), accelerations
+  assembly_.acceleration_right(v_, acceleration_change_);  // Eq. (6), accelerations
   phases_.enter(Phase::solve);
-  solver_.solve(solution_);
-  a_.swap(solution_);
+  solver_.solve(acceleration_change_);
+  for (int i = 0; i < n_; ++i) a_[i] += acceleration_change_[i];
 }
 
 }  // namespace mbs::starting_dense

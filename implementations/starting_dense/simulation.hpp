@@ -18,10 +18,14 @@ class DenseSimulation final : public Simulation {
   void do_get_state(State& state) const override;
 
   void predict();
-  /// Solves Eq. (4) and updates q', v', a', lambda and, at the new q', Phi and Phi_q. `converged`
-  /// tells whether max |Delta q| <= tolerance. False if the factorization failed.
+  /// Solves Eq. (4) and updates q', v' and a'. `converged` tells whether max |Delta q| <=
+  /// tolerance. False if the factorization failed.
   [[nodiscard]] bool pass(bool& converged);
   void apply_increment(bool& converged);
+  /// Evaluates Phi and Phi_q at the new q' and updates lambda.
+  void update_multipliers();
+  /// Takes what project() needs of the Phi_q in the tangent matrix, before Phi_q is evaluated anew.
+  void start_projections();
   void project();
 
   const StepSettings settings_;
@@ -31,7 +35,9 @@ class DenseSimulation final : public Simulation {
 
   Vector q_, v_, a_, lambda_;
   Vector multipliers_;  ///< lambda + alpha Phi, m
-  Vector solution_;     ///< n; right-hand side, then solution of the system at hand
+  Vector solution_;     ///< n; right-hand side, then solution of Eq. (4)
+  /// n; the same of Eq. (6), solved for v' - v* and a' - a*.
+  Vector velocity_change_, acceleration_change_;
 };
 
 }  // namespace mbs::starting_dense
