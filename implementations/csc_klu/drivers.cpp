@@ -18,14 +18,14 @@ Drivers<dim>::Drivers(const DriverPattern<dim>& pattern,
 }
 
 template <int dim>
-void Drivers<dim>::sample(double t, double* q, double* v1, double* v2) {
+void Drivers<dim>::sample(double t, double* q, double* v) {
   double* rate = rates_.points.data() + dim;
   double* acceleration = accelerations_.points.data() + dim;
   for (const auto& point : pattern_.points) {
     for (int k = 0; k < dim; ++k) {
       const TimeFunction::Sample sample = (*point.position)[k].at(t);
       q[point.offset + k] = sample.value;
-      v1[point.offset + k] = v2[point.offset + k] = *rate++ = sample.rate;
+      v[point.offset + k] = *rate++ = sample.rate;
       *acceleration++ = sample.acceleration;
     }
   }

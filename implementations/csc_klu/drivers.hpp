@@ -15,9 +15,9 @@ class Drivers {
   Drivers(const DriverPattern<dim>& pattern, const JacobianPattern<dim>& jacobian_pattern);
 
   [[nodiscard]] bool any() const { return !pattern_.points.empty() || !pattern_.values.empty(); }
-  /// Takes what is driven at time t (s); writes driven points to the extended positions q and to
-  /// both extended velocities.
-  void sample(double t, double* q, double* v1, double* v2);
+  /// Takes what is driven at time t (s); writes driven points to the extended positions q and
+  /// velocities v.
+  void sample(double t, double* q, double* v);
   /// phi (m) -= driven values, which the Jacobian took as zero.
   void subtract_values(double* phi) const;
   /// Writes the velocity, or acceleration, of driven points to the extended x.

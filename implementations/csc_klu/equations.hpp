@@ -82,7 +82,7 @@ Equations<dim>::Equations(const Model& model, double step)
   const std::vector<double> fixed = fixed_coordinates(model);
   q.insert(q.end(), fixed.begin(), fixed.end());
   v.resize(q.size(), 0.0);
-  if (has_drivers) drivers.sample(0.0, q.data(), v.data(), v.data());
+  if (has_drivers) drivers.sample(0.0, q.data(), v.data());
   evaluate_constraints();
   std::vector<double> unused(n);
   if (has_forces) forces.evaluate(q.data(), v.data(), unused.data());

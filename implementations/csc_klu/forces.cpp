@@ -150,7 +150,7 @@ void Forces<dim>::add_product(const double* x, double* y) const {
     for (int end = begin; end < ends_end; ++end) {
       const MovedPoint& moved = pattern_.ends[end];
       for (int k = 0; k < dim; ++k) {
-        y[moved.coordinate + k] += rate * gradient(end)[k] + moved.first * relative[k];  // Eq. (6)
+        y[moved.coordinate + k] += rate * gradient(end)[k] + moved.first * relative[k];  // Eq. (15)
       }
     }
     begin = ends_end;

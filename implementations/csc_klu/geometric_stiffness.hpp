@@ -13,7 +13,7 @@ namespace mbs::csc_klu {
 ///
 ///   stiffness.evaluate(penalty, lambda, phi);  // g
 ///   stiffness.add(values);                     // into a matrix on the pattern
-///   stiffness.add_product(x, y);               // y += (dt^2/4 sum) x, for projections
+///   stiffness.add_product(x, y);               // y += (dt^2/4 sum) x, for Eq. (15)
 class GeometricStiffness {
  public:
   /// `entries` have to outlive this, have to be in `pattern`, and may be none; `weight` is dt^2/4.

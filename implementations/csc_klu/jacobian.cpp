@@ -1,11 +1,19 @@
 // Phi, the Jacobian Phi_q and the products with it, streamed through recorded positions.
 #include "jacobian.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "point_vector.hpp"
 
 namespace mbs::csc_klu {
+namespace {
+
+void add_scaled(double factor, const Pair& x, Pair& y) {
+  for (int i = 0; i < 2; ++i) y[i] += factor * x[i];
+}
+
+}  // namespace
 
 template <int dim>
 Jacobian<dim>::Jacobian(const JacobianPattern<dim>& pattern)
@@ -48,6 +56,59 @@ void Jacobian<dim>::evaluate(const double* q, double* phi) {
       sum += pattern_.linear_terms[k].coefficient * q[pattern_.linear_terms[k].coordinate];
     }
     *phi++ = sum - linear.value;  // Eq. (8)
+  }
+}
+
+template <int dim>
+void Jacobian<dim>::multiply(const double* v, const double* a, Pair* z) const {
+  std::fill_n(z, pattern_.quadratics(), Pair{});
+  const int* const row = pattern_.block_row.data();
+  const double* value = values_.data();
+  int block = 0;
+  for (int p = 0; p < pattern_.points(); ++p) {
+    std::array<Pair, dim> x;
+    for (int k = 0; k < dim; ++k) x[k] = {v[dim * p + k], a[dim * p + k]};
+    for (const int end = pattern_.block_begin[p + 1]; block < end; ++block, value += dim) {
+      Pair sum = z[row[block]];
+      for (int k = 0; k < dim; ++k) add_scaled(value[k], x[k], sum);
+      z[row[block]] = sum;
+    }
+  }
+  z += pattern_.quadratics();
+  int k = 0;
+  for (const auto& linear : pattern_.linears) {
+    Pair sum{};
+    for (; k < linear.terms_end; ++k) {
+      const auto& [coordinate, coefficient] = pattern_.linear_terms[k];
+      add_scaled(coefficient, {v[coordinate], a[coordinate]}, sum);
+    }
+    *z++ = sum;  // Eq. (8)
+  }
+}
+
+template <int dim>
+void Jacobian<dim>::multiply_transposed(const Pair* z, double factor, double* y_v,
+                                        double* y_a) const {
+  const int* const row = pattern_.block_row.data();
+  const double* value = values_.data();
+  int block = 0;
+  for (int p = 0; p < pattern_.points(); ++p) {
+    std::array<Pair, dim> sum{};
+    for (const int end = pattern_.block_begin[p + 1]; block < end; ++block, value += dim) {
+      for (int k = 0; k < dim; ++k) add_scaled(value[k], z[row[block]], sum[k]);
+    }
+    for (int k = 0; k < dim; ++k) y_v[dim * p + k] = factor * sum[k][0];
+    for (int k = 0; k < dim; ++k) y_a[dim * p + k] = factor * sum[k][1];
+  }
+  z += pattern_.quadratics();
+  int k = 0;
+  for (const auto& linear : pattern_.linears) {
+    for (; k < linear.terms_end; ++k) {
+      const auto& [coordinate, coefficient] = pattern_.linear_terms[k];
+      y_v[coordinate] += factor * coefficient * (*z)[0];
+      y_a[coordinate] += factor * coefficient * (*z)[1];
+    }
+    ++z;
   }
 }
 

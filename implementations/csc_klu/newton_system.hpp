@@ -4,6 +4,8 @@
 #include <concepts>
 #include <span>
 
+#include "jacobian.hpp"
+
 namespace mbs::csc_klu {
 
 /// A matrix, T of Eq. (5) or that of Eq. (12), with one right-hand side, which has n numbers or,
@@ -16,17 +18,21 @@ namespace mbs::csc_klu {
 ///
 /// For projections right() takes n numbers first; include_constraints(z) completes them by
 /// -dt^2/4 alpha Phi_q^T z, Eqs. (6) and (15), or by -z, Eq. (13); z has m numbers.
-/// include_geometric_stiffness(x) adds what Eq. (16) has in T_0 x; x has n numbers. Refined ones
-/// have nu in saddle-point form: reset_reactions() makes it zero, include_reactions() puts its
+/// begin_projections(products, v, a) writes that of J v* and of J a*, `products` (m), to vectors of
+/// the size of right(), initially zero.
+/// Refined ones: include_geometric_stiffness(x) adds what Eq. (16) has in T_0 x; x has n numbers.
+/// They have nu in saddle-point form: reset_reactions() makes it zero, include_reactions() puts its
 /// share into right(), update_reactions() adds what a solution has of it.
 template <class System>
-concept NewtonSystem = requires(System system, std::span<const double> z) {
+concept NewtonSystem = requires(System system, std::span<const double> z,
+                                std::span<const Pair> products) {
   system.evaluate_residual();
   system.assemble();
   { system.factorize() } -> std::same_as<bool>;
   system.solve();
   system.update_multipliers();
   system.include_constraints(z);
+  system.begin_projections(products, system.right(), system.right());
   system.include_geometric_stiffness(z.data());
   system.reset_reactions();
   system.include_reactions();

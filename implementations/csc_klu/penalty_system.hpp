@@ -45,6 +45,11 @@ class PenaltySystem {
     for (int i = 0; i < equations_.m; ++i) weighted_[i] = factor * rates[i];
     equations_.jacobian.subtract_transposed_product(weighted_.data(), right_.data());
   }
+  void begin_projections(std::span<const Pair> products, std::span<double> right_v,
+                         std::span<double> right_a) {
+    equations_.jacobian.multiply_transposed(products.data(), -equations_.weight * penalty_,
+                                            right_v.data(), right_a.data());
+  }
   void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() {}
   void include_reactions() {}

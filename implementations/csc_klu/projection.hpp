@@ -1,4 +1,4 @@
-// Projections of v and a that end a trapezoidal step: exact, or refined with old factors.
+// Projections of v and a that end a trapezoidal step: direct, or refined with old factors.
 #pragma once
 
 #include <algorithm>
@@ -36,21 +36,28 @@ class Projection {
         stiffness_(equations.force_pattern, step),
         start_(equations.n, 0.0),
         moved_(equations.n, 0.0),
-        right_(system.right().size(), 0.0) {}
+        right_(system.right().size(), 0.0),
+        products_(equations.m),
+        begun_v_(right_.size(), 0.0),
+        begun_a_(right_.size(), 0.0) {}
 
-  /// Takes note of C and K, whenever they have gone into the matrix.
+  /// For refine(): takes note of C and K, whenever they have gone into the matrix.
   void keep_stiffness() {
     if (equations_.has_forces) stiffness_.copy_stiffness(equations_.forces);
   }
 
-  /// Eq. (6) or (13); `rates` are those without x.
-  void solve(Rates rates, double* x) {
+  /// Takes what J, the Phi_q in the matrix, gives of the right-hand sides of Eq. (6) or (13). To be
+  /// called when v and a are v* and a* already, but Phi_q is still J.
+  void begin() {
     phases_.enter(Phase::projection);
-    multiply_constant_part(x);
-    system_.include_constraints((rates_.*rates)());
-    phases_.enter(Phase::solve);
-    system_.solve();
-    std::copy_n(system_.right().data(), equations_.n, x);
+    equations_.jacobian.multiply(equations_.v.data(), equations_.a.data(), products_.data());
+    system_.begin_projections(products_, begun_v_, begun_a_);
+  }
+  /// Eq. (6) or (13), solved for what it changes of v; after begin().
+  void solve_velocity(double* v) { solve(&ConstraintRates<dim>::partial_velocity, begun_v_, v); }
+  /// The same for a, with that v.
+  void solve_acceleration(double* a) {
+    solve(&ConstraintRates<dim>::partial_acceleration, begun_a_, a);
   }
 
   /// Eq. (15) until a correction is not beyond `enough`; `rates` are those with x. Where
@@ -79,6 +86,18 @@ class Projection {
 
  private:
   static constexpr int kMostRefinements = 5;
+
+  /// `rates` are those without x.
+  void solve(Rates rates, const std::vector<double>& begun, double* x) {
+    phases_.enter(Phase::projection);
+    const std::span<double> right = system_.right();
+    std::fill_n(right.begin(), equations_.n, 0.0);
+    system_.include_constraints((rates_.*rates)());
+    for (std::size_t i = 0; i < right.size(); ++i) right[i] += begun[i];
+    phases_.enter(Phase::solve);
+    system_.solve();
+    for (int i = 0; i < equations_.n; ++i) x[i] += right[i];
+  }
 
   /// The right-hand side of Eq. (15), in right_.
   void evaluate_residual(Rates rates, const double* x) {
@@ -110,10 +129,12 @@ class Projection {
   System& system_;
   PhaseClock& phases_;
   ConstraintRates<dim> rates_;
-  Forces<dim> stiffness_;      ///< for C and K of the last matrix
-  std::vector<double> start_;  ///< n; v* or a*
-  std::vector<double> moved_;  ///< n; what T_0 multiplies
-  std::vector<double> right_;  ///< right-hand side of Eq. (15)
+  Forces<dim> stiffness_;                  ///< for C and K of the last matrix
+  std::vector<double> start_;              ///< n; v* or a*
+  std::vector<double> moved_;              ///< n; what T_0 multiplies
+  std::vector<double> right_;              ///< right-hand side of Eq. (15)
+  std::vector<Pair> products_;             ///< m; J v* and J a*
+  std::vector<double> begun_v_, begun_a_;  ///< right-hand sides of Eq. (6) or (13), as far as by J
 };
 
 }  // namespace mbs::csc_klu

@@ -56,6 +56,13 @@ class SaddleSystem {
     double* const lower = right_.data() + equations_.n;
     for (int i = 0; i < equations_.m; ++i) lower[i] = -scales_[i] * rates[i];  // Eqs. (12), (13)
   }
+  void begin_projections(std::span<const Pair> products, std::span<double> right_v,
+                         std::span<double> right_a) {
+    for (int i = 0; i < equations_.m; ++i) {
+      right_v[equations_.n + i] = -scales_[i] * products[i][0];  // Eq. (13)
+      right_a[equations_.n + i] = -scales_[i] * products[i][1];
+    }
+  }
   void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() { std::ranges::fill(nu_, 0.0); }
   void include_reactions() {

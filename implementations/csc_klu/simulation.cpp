@@ -1,6 +1,7 @@
 // The step of paper/README.md over sparse storage, and the choice of a scheme.
 #include "simulation.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,9 @@ class NewtonSimulation final : public Simulation {
         tangent_pattern_(model, equations_.jacobian_pattern, equations_.force_pattern),
         tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
                  equations_.weight * settings.penalty),
-        right_v_(equations_.v),
+        right_v_(equations_.n, 0.0),
         right_a_(equations_.n, 0.0),
+        products_(equations_.m),
         solver_(tangent_.pattern(), assemble_tangent(),
                 {Structure::Kind::definite, tangent_pattern_.order}) {}
 
@@ -36,13 +38,14 @@ class NewtonSimulation final : public Simulation {
 
   StepOutcome do_step() override {
     Equations<dim>& e = equations_;
-    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), right_v_.data());
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data());
     if (e.has_forces) e.forces.set_time(time());
     predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
     e.evaluate_constraints();
     StepOutcome outcome{StepStatus::pass_limit, 0};
-    do {
+    bool goes_on = true;
+    while (goes_on) {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
       e.evaluate_residual(settings_.penalty, right_a_.data());
@@ -60,11 +63,13 @@ class NewtonSimulation final : public Simulation {
                   e.a.data())) {
         outcome.status = StepStatus::converged;
       }
+      goes_on = outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes;
+      if (!goes_on && settings_.projections != Projections::none) begin_projections();
       phases_.enter(Phase::evaluation);
       e.evaluate_constraints();
       phases_.enter(Phase::other);
       e.update_multipliers(settings_.penalty);
-    } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
+    }
     if (settings_.projections != Projections::none) project();
     phases_.enter(Phase::other);
     return outcome;
@@ -76,24 +81,26 @@ class NewtonSimulation final : public Simulation {
     return tangent_.values();
   }
 
-  /// Eq. (6) with the last factors; the solutions are solved for in the buffers that become v, a.
+  /// What J, the Phi_q in T, gives of the right-hand sides of Eq. (6): v and a are v* and a*
+  /// already, but Phi_q is still J.
+  void begin_projections() {
+    const Jacobian<dim>& J = equations_.jacobian;
+    phases_.enter(Phase::projection);
+    J.multiply(equations_.v.data(), equations_.a.data(), products_.data());
+    J.multiply_transposed(products_.data(), -equations_.weight * settings_.penalty, right_v_.data(),
+                          right_a_.data());
+  }
+
+  /// Eq. (6) with the last factors, solved for what it changes.
   void project() {
     Equations<dim>& e = equations_;
-    const bool both = settings_.projections == Projections::both;
     const double factor = e.weight * settings_.penalty;
     phases_.enter(Phase::projection);
-    if (both) {
-      e.mass.multiply(e.v.data(), e.a.data(), right_v_.data(), right_a_.data());
-    } else {
-      e.mass.multiply(e.v.data(), right_v_.data());
-    }
-    if (e.has_forces) e.forces.add_product(e.v.data(), right_v_.data());
-    if (e.has_forces && both) e.forces.add_product(e.a.data(), right_a_.data());
     if (e.has_drivers) e.drivers.subtract_rates(e.jacobian, e.q.data(), factor, right_v_.data());
     phases_.enter(Phase::solve);
-    solver_.solve({right_v_.data(), right_a_.size()});
-    e.v.swap(right_v_);
-    if (!both) return;
+    solver_.solve(right_v_);
+    for (int i = 0; i < e.n; ++i) e.v[i] += right_v_[i];
+    if (settings_.projections != Projections::both) return;
     phases_.enter(Phase::projection);
     e.jacobian.velocity_term(e.v.data(), factor, e.reaction.data());
     e.jacobian.subtract_transposed_quadratics(e.reaction.data(), right_a_.data());
@@ -102,15 +109,16 @@ class NewtonSimulation final : public Simulation {
     }
     phases_.enter(Phase::solve);
     solver_.solve(right_a_);
-    e.a.swap(right_a_);
+    for (int i = 0; i < e.n; ++i) e.a[i] += right_a_[i];
   }
 
   const StepSettings settings_;
   Equations<dim> equations_;
   const TangentPattern<dim> tangent_pattern_;
   Tangent<dim> tangent_;
-  std::vector<double> right_v_;  ///< extended; right-hand side and solution for v'
-  std::vector<double> right_a_;  ///< n; the same for Delta q and a'
+  std::vector<double> right_v_;  ///< n; right-hand side and solution for v' - v*
+  std::vector<double> right_a_;  ///< n; the same for Delta q and a' - a*
+  std::vector<Pair> products_;   ///< m; J v* and J a*
   Solver solver_;
 };
 

@@ -55,19 +55,4 @@ void MassMatrix::multiply(const double* x, double* y) const {
   }
 }
 
-void MassMatrix::multiply(const double* x1, const double* x2, double* y1, double* y2) const {
-  const int* const row = pattern_.row.data();
-  const double* const value = values_.data();
-  int k = 0;
-  for (int i = 0; i < pattern_.columns(); ++i) {
-    double sum1 = 0.0, sum2 = 0.0;
-    for (const int end = pattern_.column_begin[i + 1]; k < end; ++k) {
-      sum1 += value[k] * x1[row[k]];
-      sum2 += value[k] * x2[row[k]];
-    }
-    y1[i] = sum1;
-    y2[i] = sum2;
-  }
-}
-
 }  // namespace mbs::csc_klu

@@ -41,8 +41,6 @@ class MassMatrix {
 
   /// y = M x; both n.
   void multiply(const double* x, double* y) const;
-  /// y1 = M x1 and y2 = M x2 in one sweep; all n.
-  void multiply(const double* x1, const double* x2, double* y1, double* y2) const;
 
  private:
   Pattern pattern_;

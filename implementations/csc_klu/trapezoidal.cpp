@@ -31,15 +31,16 @@ class TrapezoidalSimulation final : public Simulation {
 
   StepOutcome do_step() override {
     Equations<dim>& e = equations_;
-    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), e.v.data());
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data());
     if (e.has_forces) e.forces.set_time(time());
     predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
     e.evaluate_constraints();
     if (settings_.tangent != TangentReuse::kept) is_due_ = true;
     is_updated_ = false;
+    const bool projects = ends_projected();
     StepOutcome outcome{StepStatus::pass_limit, 0, 0};
-    if (!iterate(outcome) || (ends_projected() && !project(outcome))) {
+    if (!iterate(projects, outcome) || (projects && !project(outcome))) {
       outcome.status = StepStatus::factorization_failed;
     }
     phases_.enter(Phase::other);
@@ -47,11 +48,13 @@ class TrapezoidalSimulation final : public Simulation {
     return outcome;
   }
 
-  /// All passes of a step; false if a factorization failed.
-  bool iterate(StepOutcome& outcome) {
+  /// All passes of a step, perhaps one that ends projected; false if a factorization failed.
+  bool iterate(bool projects, StepOutcome& outcome) {
     Equations<dim>& e = equations_;
+    const bool begins = projects && !is_refined();
     double before = 0.0;
-    do {
+    bool goes_on = true;
+    while (goes_on) {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
       system_.evaluate_residual();
@@ -64,33 +67,38 @@ class TrapezoidalSimulation final : public Simulation {
                                      system_.right().data(), e.q.data(), e.v.data(), e.a.data());
       const bool is_slow = outcome.passes > 1 && !is_within && !(size <= before / 4.0);
       before = size;
+      if (has_converged(is_within)) outcome.status = StepStatus::converged;
+      goes_on = outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes;
+      if (begins && !goes_on) projection_.begin();
       phases_.enter(Phase::evaluation);
       e.evaluate_constraints();
       phases_.enter(Phase::other);
-      if (update_multipliers(is_within)) outcome.status = StepStatus::converged;
+      update_multipliers(is_within);
       if (settings_.tangent == TangentReuse::none) is_due_ = true;
       if (settings_.tangent == TangentReuse::kept && is_slow) is_due_ = true;
-    } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
+    }
     return true;
   }
 
-  /// After a pass; true if the step has converged.
-  bool update_multipliers(bool is_within) {
-    if (settings_.multipliers == MultiplierUpdate::every_pass) {
-      system_.update_multipliers();
-      return is_within;
-    }
-    const bool has_converged = is_within && is_updated_;
-    if (is_within) system_.update_multipliers();
-    is_updated_ = is_within;
-    return has_converged;
+  /// After a pass: whether the step has.
+  [[nodiscard]] bool has_converged(bool is_within) const {
+    return is_within && (settings_.multipliers == MultiplierUpdate::every_pass || is_updated_);
   }
+
+  /// After a pass.
+  void update_multipliers(bool is_within) {
+    is_updated_ = is_within || settings_.multipliers == MultiplierUpdate::every_pass;
+    if (is_updated_) system_.update_multipliers();
+  }
+
+  /// Whether projections are, by Eq. (15).
+  [[nodiscard]] bool is_refined() const { return settings_.tangent != TangentReuse::none; }
 
   /// Assembles with Phi_q, C and K as they are.
   bool factorize(StepOutcome& outcome) {
     phases_.enter(Phase::assembly);
     system_.assemble();
-    projection_.keep_stiffness();
+    if (is_refined()) projection_.keep_stiffness();
     phases_.enter(Phase::factorization);
     ++outcome.factorizations;
     is_due_ = !system_.factorize();
@@ -109,9 +117,9 @@ class TrapezoidalSimulation final : public Simulation {
     using Rates = ConstraintRates<dim>;
     const double h = settings_.step, tolerance = settings_.tolerance;
     const bool both = settings_.projections == Projections::both;
-    if (settings_.tangent == TangentReuse::none) {
-      projection_.solve(&Rates::partial_velocity, e.v.data());
-      if (both) projection_.solve(&Rates::partial_acceleration, e.a.data());
+    if (!is_refined()) {
+      projection_.solve_velocity(e.v.data());
+      if (both) projection_.solve_acceleration(e.a.data());
       return true;
     }
     const auto repair = [&] {
