@@ -1,6 +1,7 @@
 // Constraints, residual, tangent and right-hand sides, along the lists made at set-up.
 #include "assembly.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mbs::starting_sparse {
@@ -70,17 +71,23 @@ void Assembly::assemble() {
   forces_.assemble(values_.data() + forces_first_);
 }
 
-void Assembly::project_velocity(const double* q, const double* v, double* right) {
-  multiply_mass(v, right);
-  forces_.add_product(v, right);  // Eq. (6)
-  add_time_terms(drivers_.velocity_terms(q), right);
+void Assembly::prepare_projection(const double* x, double* right) const {
+  std::fill_n(right, variables_, 0.0);
+  for (int row = 0; row < constraints_; ++row) {
+    double sum = 0.0;
+    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      sum += jacobian_[nonzero_place_[k]] * x[nonzero_column_[k]];
+    }
+    add_gradient(row, -weight_ * penalty_ * sum, right);  // Eq. (6)
+  }
 }
 
-void Assembly::project_acceleration(const double* q, const double* v, const double* a,
-                                    double* right) {
+void Assembly::project_velocity(const double* q, double* right) {
+  add_time_terms(drivers_.velocity_terms(q), right);  // Eq. (6)
+}
+
+void Assembly::project_acceleration(const double* q, const double* v, double* right) {
   dimension_ == 2 ? evaluate_derivative<2>(v) : evaluate_derivative<3>(v);
-  multiply_mass(a, right);
-  forces_.add_product(a, right);
   add_transposed_product(quadratic_count_, right);  // Eq. (6)
   add_time_terms(drivers_.acceleration_terms(q), right);
 }
@@ -118,24 +125,22 @@ void Assembly::multiply_mass(const double* x, double* y) const {
   }
 }
 
-/// y += Phi_q' multiplier_ over the first `row_count` rows and their structural non-zeros.
-void Assembly::add_transposed_product(int row_count, double* y) const {
-  for (int row = 0; row < row_count; ++row) {
-    const double multiplier = multiplier_[row];
-    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-      y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * multiplier;
-    }
+/// y += `factor` times the structural non-zeros of a row of Phi_q.
+void Assembly::add_gradient(int row, double factor, double* y) const {
+  for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+    y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * factor;
   }
+}
+
+/// y += Phi_q' multiplier_ over the first `row_count` rows.
+void Assembly::add_transposed_product(int row_count, double* y) const {
+  for (int row = 0; row < row_count; ++row) add_gradient(row, multiplier_[row], y);
 }
 
 /// y -= weight alpha Phi_q' `terms`, which are those of the rows that depend on time.
 void Assembly::add_time_terms(std::span<const double> terms, double* y) const {
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const int row = drivers_.rows()[i];
-    const double multiplier = -weight_ * penalty_ * terms[i];
-    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-      y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * multiplier;
-    }
+    add_gradient(drivers_.rows()[i], -weight_ * penalty_ * terms[i], y);
   }
 }
 

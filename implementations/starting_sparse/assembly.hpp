@@ -43,10 +43,13 @@ class Assembly {
                 double* right);
   /// Writes what Eq. (5) adds to M behind the entries of M.
   void assemble();
-  /// right (n) = the right-hand side of Eq. (6) for v, at the evaluated q (extended).
-  void project_velocity(const double* q, const double* v, double* right);
-  /// right (n) = the right-hand side of Eq. (6) for a (n), with v (extended).
-  void project_acceleration(const double* q, const double* v, const double* a, double* right);
+  /// right (n) = -weight alpha J' J x with J, the Phi_q as last evaluated: the part of Eq. (6) that
+  /// x = v* or a* (n) has, solved for what it changes. J must still be the one in T.
+  void prepare_projection(const double* x, double* right) const;
+  /// right (n) += the rest of Eq. (6) for v, at the evaluated q (extended).
+  void project_velocity(const double* q, double* right);
+  /// right (n) += the rest of Eq. (6) for a, at the evaluated q and for v (both extended).
+  void project_acceleration(const double* q, const double* v, double* right);
 
  private:
   /// r_a - r_b at `a` and `b` of an extended vector; derivatives go to `to_a`, `to_b` of jacobian_.
@@ -80,6 +83,7 @@ class Assembly {
   template <int kDimension>
   void evaluate_bilinear_derivative(const double* v);
   void multiply_mass(const double* x, double* y) const;
+  void add_gradient(int row, double factor, double* y) const;
   void add_transposed_product(int row_count, double* y) const;
   void add_time_terms(std::span<const double> terms, double* y) const;
 

@@ -1,4 +1,4 @@
-// Evaluation of the force elements, Eq. (11).
+// Evaluation of the force elements, Eq. (11), and their entries in T.
 #include "forces.hpp"
 
 #include <algorithm>
@@ -47,6 +47,23 @@ void Forces::add_forces(const double* q, const double* v, double* right) {
 }
 
 bool Forces::is_finite() const { return std::isfinite(magnitude_); }
+
+void Forces::assemble(double* entries) const {
+  for (const SpringElement& spring : springs_) {
+    const auto& sign = spring.ends.sign;
+    const double extra = spring.along - spring.across;
+    for_each_entry(spring.ends.count, [&](int s, int i, int r, int j) {
+      const double across = i == j ? spring.across : 0.0;
+      const double along = extra * spring.direction[i] * spring.direction[j];
+      *entries++ = sign[s] * sign[r] * (across + along);  // Eq. (5)
+    });
+  }
+  for (const TorsionElement& torsion : torsions_) {
+    for_each_entry(torsion.count, [&](int s, int i, int r, int j) {
+      *entries++ = torsion.weight * torsion.gradient[s][i] * torsion.gradient[r][j];  // Eq. (5)
+    });
+  }
+}
 
 template <int kDimension>
 void Forces::evaluate_springs(const double* q, const double* v, double* right) {

@@ -1,4 +1,4 @@
-// Springs, dampers and couples: Eq. (11), its share of T in coordinate format and of Eq. (6).
+// Springs, dampers and couples: Eq. (11), its share of T in coordinate format.
 #pragma once
 
 #include <array>
@@ -25,8 +25,6 @@ class Forces {
   [[nodiscard]] bool is_finite() const;
   /// Writes the last evaluation's share of T in the order of append_positions().
   void assemble(double* entries) const;
-  /// y (n) += ((Delta t / 2) C + (Delta t^2 / 4) K) x (n), with the last evaluation's C and K.
-  void add_product(const double* x, double* y) const;
 
  private:
   using Vector = std::array<double, 3>;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace mbs::starting_sparse {
 
@@ -20,7 +19,9 @@ StartingSparseSimulation::StartingSparseSimulation(const Model& model, const Ste
       v_(model.initial_velocity().begin(), model.initial_velocity().end()),
       a_(model.variables()),
       lambda_(model.constraints()),
-      solution_(model.variables()) {
+      solution_(model.variables()),
+      velocity_change_(model.variables()),
+      acceleration_change_(model.variables()) {
   q_.insert(q_.end(), assembly_.fixed_coordinates().begin(), assembly_.fixed_coordinates().end());
   v_.resize(q_.size());
 }
@@ -54,6 +55,9 @@ StepOutcome StartingSparseSimulation::do_step() {
       break;
     }
     if (advance()) outcome.status = StepStatus::converged;
+    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
+      prepare_projections();
+    }
     evaluate_and_raise_multipliers();
   }
   if (outcome.status != StepStatus::factorization_failed && !project()) {
@@ -101,6 +105,15 @@ bool StartingSparseSimulation::advance() {
   return exceeding == 0;
 }
 
+/// Takes what Eq. (6) needs of the Phi_q in T, before it is evaluated anew.
+void StartingSparseSimulation::prepare_projections() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  assembly_.prepare_projection(v_.data(), velocity_change_.data());
+  if (settings_.projections == Projections::velocity) return;
+  assembly_.prepare_projection(a_.data(), acceleration_change_.data());
+}
+
 void StartingSparseSimulation::evaluate_and_raise_multipliers() {
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_.data());
@@ -113,16 +126,17 @@ void StartingSparseSimulation::evaluate_and_raise_multipliers() {
 bool StartingSparseSimulation::project() {
   if (settings_.projections == Projections::none) return true;
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(q_.data(), v_.data(), solution_.data());
+  assembly_.project_velocity(q_.data(), velocity_change_.data());
   phases_.enter(Phase::solve);
-  if (!solver_.solve(solution_.data())) return false;
+  if (!solver_.solve(velocity_change_.data())) return false;
   phases_.enter(Phase::projection);
-  std::copy(solution_.begin(), solution_.end(), v_.begin());
+  for (std::size_t i = 0; i < a_.size(); ++i) v_[i] += velocity_change_[i];
   if (settings_.projections == Projections::velocity) return true;
-  assembly_.project_acceleration(q_.data(), v_.data(), a_.data(), solution_.data());
+  assembly_.project_acceleration(q_.data(), v_.data(), acceleration_change_.data());
   phases_.enter(Phase::solve);
-  if (!solver_.solve(solution_.data())) return false;
-  std::swap(a_, solution_);
+  if (!solver_.solve(acceleration_change_.data())) return false;
+  phases_.enter(Phase::projection);
+  for (std::size_t i = 0; i < a_.size(); ++i) a_[i] += acceleration_change_[i];
   return true;
 }
 
