@@ -1,4 +1,4 @@
-// The products with M, and the values of T.
+// The product with M, and the values of T.
 #include "assembly.hpp"
 
 #include <algorithm>
@@ -21,20 +21,6 @@ void MassMatrix::residual(const double* x, const double* Q, double scale, double
     double sum = Q[i];
     for (int k = starts[i]; k < starts[i + 1]; ++k) sum -= M[k] * x[rows[k]];
     y[i] = scale * sum;
-  }
-}
-
-template <std::size_t Count>
-void MassMatrix::multiply(const double* const* x, double* const* y) const {
-  const int n = pattern_.variables();
-  const int *starts = pattern_.starts.data(), *rows = pattern_.rows.data();
-  const double* M = values_.data();
-  for (int i = 0; i < n; ++i) {
-    double sum[Count] = {};
-    for (int k = starts[i]; k < starts[i + 1]; ++k) {
-      for (std::size_t c = 0; c < Count; ++c) sum[c] += M[k] * x[c][rows[k]];
-    }
-    for (std::size_t c = 0; c < Count; ++c) y[c][i] = sum[c];
   }
 }
 
@@ -103,8 +89,6 @@ void Tangent<D>::update(const Jacobian<D>& jacobian, const Forces<D>& forces) {
   forces.add_tangent(schedule_.places, T);
 }
 
-template void MassMatrix::multiply<1>(const double* const*, double* const*) const;
-template void MassMatrix::multiply<2>(const double* const*, double* const*) const;
 template class Tangent<2>;
 template class Tangent<3>;
 

@@ -1,7 +1,6 @@
 // The values of M and T on their patterns.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -22,9 +21,6 @@ class MassMatrix {
 
   /// y = scale (Q - M x).
   void residual(const double* x, const double* Q, double scale, double* y) const;
-  /// y[k] = M x[k] for Count vectors, reading M once.
-  template <std::size_t Count>
-  void multiply(const double* const* x, double* const* y) const;
 
  private:
   SparsityPattern pattern_;

@@ -102,9 +102,8 @@ double Drivers<D>::term(const Row& row, const double* x, const Sample& derivativ
 }
 
 template <int D>
-void Drivers<D>::rates(const double* x, double factor, std::span<double> y) const {
-  std::ranges::fill(y, 0.0);
-  for (const Row& row : rows_) y[row.row] = factor * term(row, x, first_);  // Eq. (7)
+void Drivers<D>::add_rates(const double* x, double factor, double* y) const {
+  for (const Row& row : rows_) y[row.row] += factor * term(row, x, first_);  // Eq. (7)
 }
 
 template <int D>

@@ -29,8 +29,8 @@ class Drivers {
   void set_values(Jacobian<D>& jacobian) const;
   /// Q (n) of gravity and driven masses, where there are any.
   void set_force(double* Q) const;
-  /// y = factor Phi_t (m) at x.
-  void rates(const double* x, double factor, std::span<double> y) const;
+  /// y (m) += factor Phi_t at x.
+  void add_rates(const double* x, double factor, double* y) const;
   /// y (m) += factor times what driven accelerations give of the second derivative of Phi at x.
   void add_accelerations(const double* x, double factor, double* y) const;
 

@@ -126,39 +126,7 @@ void Forces<D>::add_tangent(const std::vector<Place<D>>& places, double* T) cons
   }
 }
 
-template <int D>
-template <std::size_t Count>
-void Forces<D>::add_product(const double* const* x, double* const* y) const {
-  auto values = springs_.begin();
-  for (const auto& spring : layout_.springs) {
-    const auto& [e, along, across] = *values++;
-    for (std::size_t c = 0; c < Count; ++c) {
-      Vector<D> d{};
-      for (const auto& end : ends(spring)) d = d + end.in_ab * at<D>(x[c], end.offset);
-      const Vector<D> result = along * dot(e, d) * e + across * d;
-      for (const auto& end : ends(spring)) add(end.in_ab, result, y[c] + end.offset);
-    }
-  }
-  auto gradients = gradients_.begin();
-  for (const auto& spring : layout_.torsion_springs) {
-    const auto of = ends(spring);
-    for (std::size_t c = 0; c < Count; ++c) {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < of.size(); ++i) {
-        sum += dot(gradients[i], at<D>(x[c], of[i].offset));
-      }
-      sum *= weight(spring);
-      for (std::size_t i = 0; i < of.size(); ++i) add(sum, gradients[i], y[c] + of[i].offset);
-    }
-    gradients += of.size();
-  }
-}
-
 template class Forces<2>;
 template class Forces<3>;
-template void Forces<2>::add_product<1>(const double* const*, double* const*) const;
-template void Forces<2>::add_product<2>(const double* const*, double* const*) const;
-template void Forces<3>::add_product<1>(const double* const*, double* const*) const;
-template void Forces<3>::add_product<2>(const double* const*, double* const*) const;
 
 }  // namespace mbs::csc_umfpack

@@ -1,7 +1,6 @@
-// Springs, torsion springs and couples: their share of the residual, of T and of Eq. (6).
+// Springs, torsion springs and couples: their share of the residual and of T.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -27,9 +26,6 @@ class Forces {
   void evaluate(const double* x, const double* v, double* y);
   /// T += (Delta t / 2) C + (Delta t^2 / 4) K, into the places that element_places() gave.
   void add_tangent(const std::vector<Place<D>>& places, double* T) const;
-  /// y[k] += [(Delta t / 2) C + (Delta t^2 / 4) K] x[k] for Count vectors (n).
-  template <std::size_t Count>
-  void add_product(const double* const* x, double* const* y) const;
 
  private:
   struct SpringValues {

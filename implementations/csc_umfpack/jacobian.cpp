@@ -1,8 +1,6 @@
 // Phi, Phi_q and the products with it.
 #include "jacobian.hpp"
 
-#include <algorithm>
-
 namespace mbs::csc_umfpack {
 namespace {
 
@@ -69,22 +67,37 @@ double* Jacobian<D>::evaluate_products(const double* x, double* Phi, double* J) 
 }
 
 template <int D>
-void Jacobian<D>::velocity_term(const double* v, double factor, double* y) const {
+void Jacobian<D>::add_product(const double* x, double factor, double* y) const {
+  const double* J = values_.data();
+  for (const auto& block : layout_.blocks) {
+    y[block.row] += factor * dot(at<D>(J, 0), at<D>(x, block.offset));
+    J += D;
+  }
+  y += layout_.order.size() - layout_.linears.size();
+  for (const auto& linear : layout_.linears) {
+    for (int t = linear.first; t < linear.last; ++t) {
+      *y += factor * (layout_.terms[t].coefficient * x[layout_.terms[t].coordinate]);
+    }
+    ++y;
+  }
+}
+
+template <int D>
+void Jacobian<D>::add_velocity_term(const double* v, double factor, double* y) const {
   const double twice = 2.0 * factor;
   for (const auto* rows : {&layout_.pins, &layout_.links}) {
     for (const auto& row : *rows) {
       double u[D];
-      *y++ = twice * squared_difference(v, row.a, row.b, u);  // Eq. (7)
+      *y++ += twice * squared_difference(v, row.a, row.b, u);  // Eq. (7)
     }
   }
   for (const auto& row : layout_.dots) {
-    *y++ = twice * dot(difference<D>(v, row.a, row.b), difference<D>(v, row.c, row.d));  // Eq. (7)
+    *y++ += twice * dot(difference<D>(v, row.a, row.b), difference<D>(v, row.c, row.d));  // Eq. (7)
   }
   for (const auto& row : layout_.bilinears) {
     const Vector<D> Bw = product(row.B, difference<D>(v, row.c, row.d));
-    *y++ = twice * dot(difference<D>(v, row.a, row.b), Bw);  // Eq. (7)
+    *y++ += twice * dot(difference<D>(v, row.a, row.b), Bw);  // Eq. (7)
   }
-  std::fill_n(y, layout_.linears.size(), 0.0);  // Eq. (8)
 }
 
 template <int D>

@@ -23,9 +23,11 @@ class Jacobian {
 
   /// Phi (m) and Phi_q at x.
   void evaluate(const double* x, double* Phi);
-  /// y = factor times what velocities v alone give of the second derivative of Phi (m); v is laid
-  /// out like x, with zeros for points at rest.
-  void velocity_term(const double* v, double factor, double* y) const;
+  /// y (m) += factor Phi_q x, x (n).
+  void add_product(const double* x, double factor, double* y) const;
+  /// y (m) += factor times what velocities v alone give of the second derivative of Phi; v is laid
+  /// out like x of evaluate(), with zeros for points at rest.
+  void add_velocity_term(const double* v, double factor, double* y) const;
   /// y (n) -= Phi_q^T z, z (m).
   void subtract_transpose_product(const double* z, double* y) const;
 

@@ -1,6 +1,8 @@
 // What the constraints put into the right-hand sides of the penalty form.
 #include "penalty_system.hpp"
 
+#include <algorithm>
+
 namespace mbs::csc_umfpack {
 
 template <int D>
@@ -32,16 +34,26 @@ void PenaltySystem<D>::update_multipliers(const double* Phi, double* lambda) con
 }
 
 template <int D>
+void PenaltySystem<D>::start_projection(const double* moving, double* rhs) {
+  std::ranges::fill(row_factors_, 0.0);
+  jacobian_.add_product(moving, factor_, row_factors_.data());
+  std::fill_n(rhs, size(), 0.0);
+  jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
+}
+
+template <int D>
 void PenaltySystem<D>::add_rates(const Drivers<D>& drivers, const double* q, double* rhs) {
   if (drivers.empty()) return;
-  drivers.rates(q, factor_, row_factors_);
+  std::ranges::fill(row_factors_, 0.0);
+  drivers.add_rates(q, factor_, row_factors_.data());
   jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
 }
 
 template <int D>
 void PenaltySystem<D>::add_accelerations(const Drivers<D>& drivers, const double* q,
                                          const double* v, double* rhs) {
-  jacobian_.velocity_term(v, factor_, row_factors_.data());
+  std::ranges::fill(row_factors_, 0.0);
+  jacobian_.add_velocity_term(v, factor_, row_factors_.data());
   if (!drivers.empty()) drivers.add_accelerations(q, factor_, row_factors_.data());
   jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
 }

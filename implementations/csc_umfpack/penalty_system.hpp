@@ -32,8 +32,11 @@ class PenaltySystem {
   /// Eq. (1), with Phi of the new q'.
   void update_multipliers(const double* Phi, double* lambda) const;
 
-  /// Complete the right-hand sides of Eq. (6), which have T_0 v* and T_0 a*; q and v are laid out
-  /// as x of the layout.
+  /// rhs = the share that Phi_q of the last pass, still in the Jacobian, has in the right-hand side
+  /// of Eq. (6) solved for v' - v* or a' - a*; `moving` (n) is v* or a*.
+  void start_projection(const double* moving, double* rhs);
+  /// Complete these right-hand sides with Phi_q of the final q'; q and v are laid out as x of the
+  /// layout.
   void add_rates(const Drivers<D>& drivers, const double* q, double* rhs);
   void add_accelerations(const Drivers<D>& drivers, const double* q, const double* v, double* rhs);
 

@@ -41,15 +41,21 @@ void SaddlePointSystem<D>::update_multipliers(const double*, double* lambda) con
 }
 
 template <int D>
+void SaddlePointSystem<D>::start_projection(const double* moving, double* rhs) const {
+  std::fill_n(rhs, n_ + m_, 0.0);
+  jacobian_.add_product(moving, -1.0, rhs + n_);  // Eq. (13)
+}
+
+template <int D>
 void SaddlePointSystem<D>::add_rates(const Drivers<D>& drivers, const double* q,
                                      double* rhs) const {
-  drivers.rates(q, -1.0, {rhs + n_, rhs + n_ + m_});  // Eq. (13)
+  if (!drivers.empty()) drivers.add_rates(q, -1.0, rhs + n_);  // Eq. (13)
 }
 
 template <int D>
 void SaddlePointSystem<D>::add_accelerations(const Drivers<D>& drivers, const double* q,
                                              const double* v, double* rhs) const {
-  jacobian_.velocity_term(v, -1.0, rhs + n_);                          // Eq. (13)
+  jacobian_.add_velocity_term(v, -1.0, rhs + n_);                      // Eq. (13)
   if (!drivers.empty()) drivers.add_accelerations(q, -1.0, rhs + n_);  // Eq. (13)
 }
 

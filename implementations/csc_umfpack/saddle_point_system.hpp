@@ -31,8 +31,11 @@ class SaddlePointSystem {
   /// lambda += (4 / Delta t^2) mu, with mu of the last solution.
   void update_multipliers(const double* Phi, double* lambda) const;
 
-  /// Complete the right-hand sides of Eq. (13), which have T_0 v* and T_0 a*; q and v are laid out
-  /// as x of the layout.
+  /// rhs = the share that Phi_q of the last pass, still in the Jacobian, has in the right-hand side
+  /// of Eq. (13) solved for v' - v* or a' - a*; `moving` (n) is v* or a*.
+  void start_projection(const double* moving, double* rhs) const;
+  /// Complete these right-hand sides; q and v are those of the end of the step, laid out as x of
+  /// the layout.
   void add_rates(const Drivers<D>& drivers, const double* q, double* rhs) const;
   void add_accelerations(const Drivers<D>& drivers, const double* q, const double* v,
                          double* rhs) const;

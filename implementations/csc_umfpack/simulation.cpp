@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "penalty_system.hpp"
 #include "saddle_point_system.hpp"
@@ -31,7 +30,7 @@ CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settin
       Phi_(m_),
       rhs_(system_.size()),
       rhs_a_(system_.size()),
-      delta_q_(n_) {
+      delta_(n_) {
   std::ranges::copy(points_.fixed, q_.begin() + n_);
 }
 
@@ -58,7 +57,7 @@ StepOutcome CscUmfpack<D, System>::do_step() {
   if (!drivers_.empty()) drive();
   predict();
   StepOutcome outcome{StepStatus::pass_limit, 0};
-  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+  for (bool last = false; !last;) {
     ++outcome.passes;
     evaluate_residual();
     phases_.enter(Phase::assembly);
@@ -69,13 +68,14 @@ StepOutcome CscUmfpack<D, System>::do_step() {
       return {StepStatus::factorization_failed, outcome.passes};
     }
     phases_.enter(Phase::solve);
-    system_.solve(rhs_.data(), delta_q_.data());  // Eq. (4) or (12)
+    system_.solve(rhs_.data(), delta_.data());  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
+    last = outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (last) start_projections();
     update_multipliers();
   }
-  if (settings_.projections == Projections::velocity) project<1>();
-  if (settings_.projections == Projections::both) project<2>();
+  project();
   phases_.enter(Phase::other);
   return outcome;
 }
@@ -115,7 +115,7 @@ bool CscUmfpack<D, System>::correct() {
   const double to_v = 2.0 / settings_.step, to_a = to_v * to_v;
   const double tolerance = settings_.tolerance;
   double *q = q_.data(), *v = v_.data(), *a = a_.data();
-  const double* delta_q = delta_q_.data();
+  const double* delta_q = delta_.data();
   int outside = 0;
   for (int i = 0; i < n_; ++i) {
     outside += !(std::abs(delta_q[i]) <= tolerance);  // a NaN is outside
@@ -134,22 +134,32 @@ void CscUmfpack<D, System>::update_multipliers() {
 }
 
 template <int D, template <int> class System>
-template <std::size_t Count>
-void CscUmfpack<D, System>::project() {
+void CscUmfpack<D, System>::start_projections() {
+  if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  const double* moving[] = {v_.data(), a_.data()};
-  double* sides[] = {rhs_.data(), rhs_a_.data()};
-  mass_.multiply<Count>(moving, sides);
-  forces_.template add_product<Count>(moving, sides);
-  system_.add_rates(drivers_, q_.data(), rhs_.data());
-  phases_.enter(Phase::solve);
-  system_.solve(rhs_.data(), v_.data());  // Eq. (6) or (13)
-  if constexpr (Count == 2) {
-    phases_.enter(Phase::projection);
-    system_.add_accelerations(drivers_, q_.data(), v_.data(), rhs_a_.data());
-    phases_.enter(Phase::solve);
-    system_.solve(rhs_a_.data(), a_.data());  // Eq. (6) or (13)
+  system_.start_projection(v_.data(), rhs_.data());
+  if (settings_.projections == Projections::both) {
+    system_.start_projection(a_.data(), rhs_a_.data());
   }
+}
+
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::project() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  system_.add_rates(drivers_, q_.data(), rhs_.data());
+  add_solution(rhs_, v_);  // Eq. (6) or (13)
+  if (settings_.projections == Projections::velocity) return;
+  system_.add_accelerations(drivers_, q_.data(), v_.data(), rhs_a_.data());
+  add_solution(rhs_a_, a_);  // Eq. (6) or (13)
+}
+
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::add_solution(const std::vector<double>& rhs, std::vector<double>& x) {
+  phases_.enter(Phase::solve);
+  system_.solve(rhs.data(), delta_.data());
+  phases_.enter(Phase::projection);
+  for (int i = 0; i < n_; ++i) x[i] += delta_[i];
 }
 
 template class CscUmfpack<2, PenaltySystem>;

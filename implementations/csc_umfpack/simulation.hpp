@@ -1,7 +1,6 @@
 // One simulation in D dimensions: the step of paper/README.md on the storage of assembly.hpp.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "assembly.hpp"
@@ -34,9 +33,12 @@ class CscUmfpack final : public Simulation {
   [[nodiscard]] bool correct();
   /// Phi, Phi_q and lambda at the new q.
   void update_multipliers();
-  /// Step 3: the first Count of the projections.
-  template <std::size_t Count>
+  /// Step 3: what the projections need of Phi_q of the last pass, before it is evaluated anew.
+  void start_projections();
+  /// Step 3: the projections.
   void project();
+  /// x (n) += the solution for a right-hand side.
+  void add_solution(const std::vector<double>& rhs, std::vector<double>& x);
 
   const StepSettings settings_;
   const int n_;
@@ -51,14 +53,14 @@ class CscUmfpack final : public Simulation {
   Drivers<D> drivers_;
   std::vector<double> force_;  ///< n, Q without elements: constant during a step
 
-  std::vector<double> q_;        ///< n, then the fixed points: x of the layout
-  std::vector<double> v_;        ///< n, then those of the fixed points
-  std::vector<double> a_;        ///< n
-  std::vector<double> lambda_;   ///< m, rows of the layout
-  std::vector<double> Phi_;      ///< m, rows of the layout
-  std::vector<double> rhs_;      ///< of the system
-  std::vector<double> rhs_a_;    ///< of the system, for a' in Eq. (6) or (13)
-  std::vector<double> delta_q_;  ///< n
+  std::vector<double> q_;       ///< n, then the fixed points: x of the layout
+  std::vector<double> v_;       ///< n, then those of the fixed points
+  std::vector<double> a_;       ///< n
+  std::vector<double> lambda_;  ///< m, rows of the layout
+  std::vector<double> Phi_;     ///< m, rows of the layout
+  std::vector<double> rhs_;     ///< of the system
+  std::vector<double> rhs_a_;   ///< of the system, for a' - a* in Eq. (6) or (13)
+  std::vector<double> delta_;   ///< n, Delta q, v' - v* or a' - a*
 };
 
 }  // namespace mbs::csc_umfpack
