@@ -38,29 +38,20 @@ void Assembly::drive(double t, double* q, double* u) {
 
 void Assembly::balance(const double* q, const double* u, const double* s, double* result) {
   mass_.subtract_product(force_.data(), s, result);
-  constraints_.multiply(row_.data());
-  rows_schedule_.sum(result, constraints_.forces(), result);
+  add_row_forces(result);
   if (!forces_.empty()) {
     forces_.evaluate(q, u);
     forces_.add_loads(q, result);
   }
 }
 
-void Assembly::multiply(const double* u, double* velocity) {
-  mass_.product(u, velocity);
-  if (!forces_.empty()) forces_.add_product(u, velocity);
+void Assembly::add_row_forces(double* result) {
+  constraints_.multiply(row_.data());
+  rows_schedule_.sum(result, constraints_.forces(), result);
 }
 
-void Assembly::multiply(const double* u, const double* s, double* velocity, double* acceleration) {
-  mass_.products(u, s, velocity, acceleration);
-  if (!forces_.empty()) {
-    forces_.add_product(u, velocity);
-    forces_.add_product(s, acceleration);
-  }
-}
-
-void Assembly::velocity_terms(const double* q, const double* u, double factor, double* result) {
-  constraints_.velocity_terms(u, factor, result);  // (dt^2/4) v v = u u
+void Assembly::add_velocity_terms(const double* q, const double* u, double factor, double* result) {
+  constraints_.add_velocity_terms(u, factor, result);  // (dt^2/4) v v = u u
   for (const DrivenRow& row : drivers_.rows()) {
     result[row.row] += factor * drivers_.acceleration(row, q);
   }

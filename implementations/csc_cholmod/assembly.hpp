@@ -17,7 +17,7 @@
 namespace mbs::csc_cholmod {
 
 /// Velocities and accelerations come as lengths, u = (dt/2) v and s = (dt^2/4) a, m: by Eq. (2)
-/// they grow by the same Delta q as the coordinates. q and u have all places, s n and a zero.
+/// they grow by the same Delta q as the coordinates. q, u and s have all places.
 class Assembly {
  public:
   Assembly(const Assembly&) = delete;
@@ -43,12 +43,10 @@ class Assembly {
 
   /// result (n) = (dt^2/4) Q - M s + Phi_q^T row_; takes the force elements at q and u.
   void balance(const double* q, const double* u, const double* s, double* result);
-  /// velocity (n) = [M + (dt/2) C + (dt^2/4) K] u, with C and K of the last balance().
-  void multiply(const double* u, double* velocity);
-  /// The same for two.
-  void multiply(const double* u, const double* s, double* velocity, double* acceleration);
-  /// result (rows) = factor * (dt^2/4) (Phi-dot_q v + Phi-dot_t).
-  void velocity_terms(const double* q, const double* u, double factor, double* result);
+  /// result (n) += Phi_q^T row_.
+  void add_row_forces(double* result);
+  /// result (rows) += factor * (dt^2/4) (Phi-dot_q v + Phi-dot_t).
+  void add_velocity_terms(const double* q, const double* u, double factor, double* result);
 
   double quarter_;  ///< dt^2/4, s^2
   Coordinates coordinates_;

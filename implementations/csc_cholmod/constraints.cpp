@@ -4,6 +4,24 @@
 #include <cstddef>
 
 namespace mbs::csc_cholmod {
+namespace {
+
+/// result (rows) += factor * the linear rows of Phi_q times x. Inlined: a call at the end of a
+/// vectorised function would leave the upper halves of vector registers set (GCC), and CHOLMOD's
+/// scalar code is slower then.
+[[gnu::always_inline]] inline void add_linear_product(const LinearBlock& linear, const double* x,
+                                                      double factor, double* __restrict result) {
+  result += linear.first_row;
+  for (int k = 0; k < linear.count; ++k) {
+    double sum = result[k];
+    for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
+      sum += factor * linear.coefficient[t] * x[linear.column[t]];
+    }
+    result[k] = sum;
+  }
+}
+
+}  // namespace
 
 Constraints::Constraints(const LoweredConstraints& lowered)
     : lowered_(lowered),
@@ -39,24 +57,29 @@ void Constraints::evaluate_phi(const double* q) {
     }
   }
   for (const PairValues& block : pairs_) block.add_products(1.0, phi);  // Eq. (7)
-
-  const LinearBlock& linear = lowered_.linear;
-  phi += linear.first_row;
-  for (int k = 0; k < linear.count; ++k) {
-    double sum = phi[k];
-    for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
-      sum += linear.coefficient[t] * q[linear.column[t]];  // Eq. (8)
-    }
-    phi[k] = sum;
-  }
+  add_linear_product(lowered_.linear, q, 1.0, phi);                     // Eq. (8)
 }
 
-void Constraints::velocity_terms(const double* v, double factor, double* __restrict result) {
+void Constraints::add_jacobian_product(const double* x, double factor,
+                                       double* __restrict result) const {
+  const DistanceBlock& distance = lowered_.distance;
+  const double* values = values_.data();
+  const int* plus = distance.plus.data();
+  const int* minus = distance.minus.data();
+  for (int axis = 0; axis < lowered_.dimension; ++axis) {
+    for (int k = 0; k < distance.count; ++k) {
+      result[k] += factor * *values++ * (x[*plus++] - x[*minus++]);
+    }
+  }
+  for (const PairValues& block : pairs_) block.add_jacobian_product(x, factor, result);
+  add_linear_product(lowered_.linear, x, factor, result);
+}
+
+void Constraints::add_velocity_terms(const double* v, double factor, double* __restrict result) {
   const DistanceBlock& distance = lowered_.distance;
   const int* plus = distance.plus.data();
   const int* minus = distance.minus.data();
   const double twice = 2.0 * factor;  // Eq. (7)
-  for (int k = 0; k < lowered_.rows(); ++k) result[k] = 0.0;
   for (int axis = 0; axis < lowered_.dimension; ++axis) {
     for (int k = 0; k < distance.count; ++k) {
       const double difference = v[*plus++] - v[*minus++];

@@ -20,8 +20,11 @@ class Constraints {
   void evaluate_jacobian(const double* q);
   /// Phi (rows) at the q of the last evaluate_jacobian(). Eqs. (7), (8)
   void evaluate_phi(const double* q);
-  /// result (rows) = factor * what velocities v (all places) alone give of Phi-double-dot.
-  void velocity_terms(const double* v, double factor, double* result);
+  /// result (rows) += factor * Phi_q x, at the q of the last evaluate_jacobian(); x (all places) is
+  /// zero behind the unknowns.
+  void add_jacobian_product(const double* x, double factor, double* result) const;
+  /// result (rows) += factor * what velocities v (all places) alone give of Phi-double-dot.
+  void add_velocity_terms(const double* v, double factor, double* result);
   /// Each Jacobian value times the x (rows) of its row: the summands of Phi_q^T x.
   void multiply(const double* x);
   /// products = factor times each product of two values, then the same negated: the summands of

@@ -26,11 +26,6 @@ Places Coordinates::places(int point) const {
   return result;
 }
 
-Places Coordinates::free_places(int point) const {
-  const Places result = places(point);
-  return is_unknown(result[0]) ? result : Places{zero(), zero(), zero()};
-}
-
 Places Coordinates::axis_places(int point) const {
   return point < 0 ? Places{zero(), zero(), zero() + 1} : places(point);
 }

@@ -30,8 +30,6 @@ class Coordinates {
   [[nodiscard]] int zero() const { return unknowns(); }
   [[nodiscard]] int place(int point, int axis) const { return place_[point * dimension_ + axis]; }
   [[nodiscard]] Places places(int point) const;
-  /// The same, but zero() for a fixed point: its motion has no column in C and K.
-  [[nodiscard]] Places free_places(int point) const;
   /// Of an axis to turn about; -1 is (0, 0, 1).
   [[nodiscard]] Places axis_places(int point) const;
 

@@ -8,10 +8,10 @@
 namespace mbs::csc_cholmod {
 namespace {
 
-std::vector<Contribution> contributions(const LoweredForces& lowered, bool with_couples) {
+std::vector<Contribution> contributions(const LoweredForces& lowered) {
   std::vector<Contribution> result;
   add_row_contributions(lowered.gradients(), lowered.values(), result);
-  if (with_couples) add_row_contributions(lowered.couple_rows(), lowered.values(), result);
+  add_row_contributions(lowered.couple_rows(), lowered.values(), result);
   return result;
 }
 
@@ -42,8 +42,7 @@ Forces::Forces(const LoweredForces& lowered, const StepSettings& settings)
       springs_(lowered.springs, laws_, settings),
       torsions_(lowered.springs.dimension, lowered.torsions, laws_, settings),
       couples_(lowered.springs.dimension, lowered.couples, settings),
-      load_rows_(contributions(lowered, true)),
-      stiff_rows_(contributions(lowered, false)),
+      load_rows_(contributions(lowered)),
       summands_(2 * lowered.values()) {}
 
 void Forces::evaluate(const double* q, const double* u) {
@@ -53,17 +52,8 @@ void Forces::evaluate(const double* q, const double* u) {
 
 void Forces::add_loads(const double* q, double* result) {
   couples_.loads(q, torsions_.loads(springs_.loads(summands_.data())));
-  gather(load_rows_, result);
-}
-
-void Forces::add_product(const double* x, double* result) {
-  torsions_.multiply(x, springs_.multiply(x, summands_.data()));
-  gather(stiff_rows_, result);
-}
-
-void Forces::gather(const GatherSchedule& rows, double* result) {
   negate(summands_.data(), lowered_.values(), summands_.data() + lowered_.values());
-  rows.sum(result, summands_.data(), result);
+  load_rows_.sum(result, summands_.data(), result);
 }
 
 void Forces::tangent(double* products) const {

@@ -1,4 +1,4 @@
-// All force elements: what they add to (dt^2/4) Q, to T and to the right-hand sides of Eq. (6).
+// All force elements: what they add to (dt^2/4) Q and to T.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@
 namespace mbs::csc_cholmod {
 
 /// C and K have no storage of their own: elements keep gradients and weights of the last
-/// evaluate(), from which T gets its products and Eq. (6) its vectors.
+/// evaluate(), from which T gets its products.
 class Forces {
  public:
   /// `lowered` must outlive this.
@@ -29,14 +29,10 @@ class Forces {
   void evaluate(const double* q, const double* u);
   /// result (n) += (dt^2/4) times what they give of Q; q is that of evaluate(). Eqs. (11), (18)
   void add_loads(const double* q, double* result);
-  /// result (n) += [(dt/2) C + (dt^2/4) K] x; x (n, then a zero).
-  void add_product(const double* x, double* result);
   /// products: the summands of (dt/2) C + (dt^2/4) K, then the same negated.
   void tangent(double* products) const;
 
  private:
-  void gather(const GatherSchedule& rows, double* result);
-
   const LoweredForces& lowered_;
   std::vector<ScaledLaw> laws_;   ///< those of `lowered`
   std::vector<int> driven_laws_;  ///< those whose factor is not constant
@@ -44,7 +40,6 @@ class Forces {
   TorsionSprings torsions_;
   Couples couples_;
   GatherSchedule load_rows_;
-  GatherSchedule stiff_rows_;     ///< without couples
   std::vector<double> summands_;  ///< values, negated values; scratch
 };
 

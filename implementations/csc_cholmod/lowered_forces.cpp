@@ -25,21 +25,15 @@ LoweredForces::LoweredForces(const Model& model, const Coordinates& coordinates)
 void LoweredForces::add_springs(const Model& model, const Coordinates& coordinates) {
   SpringBlock& s = springs;
   const int count = s.count = static_cast<int>(model.springs().size() + model.force_laws().size());
-  for (auto* places : {&s.plus, &s.minus, &s.free_plus, &s.free_minus}) {
-    places->resize(spring_values());
-  }
+  for (auto* places : {&s.plus, &s.minus}) places->resize(spring_values());
   int k = 0;
   const auto add = [&](int a, int b) {
-    const Places free_a = coordinates.free_places(a);
-    const Places free_b = coordinates.free_places(b);
     for (int axis = 0; axis < s.dimension; ++axis) {
       const int value = axis * count + k;
-      s.plus[value] = coordinates.place(a, axis);
-      s.minus[value] = coordinates.place(b, axis);
-      s.free_plus[value] = free_a[axis];
-      s.free_minus[value] = free_b[axis];
-      if (coordinates.is_unknown(free_a[0])) gradients_.push({free_a[axis], value, false});
-      if (coordinates.is_unknown(free_b[0])) gradients_.push({free_b[axis], value, true});
+      const int plus = s.plus[value] = coordinates.place(a, axis);
+      const int minus = s.minus[value] = coordinates.place(b, axis);
+      if (coordinates.is_unknown(plus)) gradients_.push({plus, value, false});
+      if (coordinates.is_unknown(minus)) gradients_.push({minus, value, true});
     }
     gradients_.end_row();
     ++k;
@@ -66,10 +60,8 @@ void LoweredForces::add_torsions(const Model& model, const Coordinates& coordina
     push_point(coordinates, t.d, w, true, gradients_);
     gradients_.end_row();
     const auto at = [&](int point) { return coordinates.places(point); };
-    const auto free_at = [&](int point) { return coordinates.free_places(point); };
-    return torsions.emplace_back(TorsionElement{at(t.a), at(t.b), at(t.c), at(t.d),
-                                                coordinates.axis_places(t.axis), free_at(t.a),
-                                                free_at(t.b), free_at(t.c), free_at(t.d)});
+    return torsions.emplace_back(
+        TorsionElement{at(t.a), at(t.b), at(t.c), at(t.d), coordinates.axis_places(t.axis)});
   };
   for (const TorsionSpring& t : model.torsion_springs()) {
     TorsionElement& element = add(t);

@@ -15,7 +15,6 @@ struct SpringBlock {
   int dimension = 0;
   int count = 0;
   std::vector<int> plus, minus;                    ///< dimension x count
-  std::vector<int> free_plus, free_minus;          ///< likewise, of free points or the zero
   std::vector<double> stiffness, damping, length;  ///< of springs; N/m, N s/m, m
 };
 
@@ -23,11 +22,10 @@ struct SpringBlock {
 /// first is that of u.
 struct TorsionElement {
   Places a, b, c, d, axis;
-  Places free_a, free_b, free_c, free_d;  ///< of free points or the zero
-  double stiffness = 0.0;                 ///< N m/rad
-  double damping = 0.0;                   ///< N m s/rad
-  double angle = 0.0;                     ///< rad
-  int law = -1;                           ///< index into LoweredForces::laws; -1: a spring
+  double stiffness = 0.0;  ///< N m/rad
+  double damping = 0.0;    ///< N m s/rad
+  double angle = 0.0;      ///< rad
+  int law = -1;            ///< index into LoweredForces::laws; -1: a spring
 };
 
 struct CoupleElement {

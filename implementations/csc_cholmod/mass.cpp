@@ -89,14 +89,15 @@ void MassMatrix::add_rows(std::vector<Entry>& loose) {
   }
 }
 
-template <typename Visit>
-void MassMatrix::for_rows(Visit visit) const {
+void MassMatrix::subtract_rows(const double* __restrict x, double* __restrict result) const {
   const int* row = row_.data();
   const int* column = column_.data();
   const double* value = value_.data();
-  const auto run = [&](auto entries, int rows) {
+  const auto run = [&](auto entries, int rows) {  // a constant where it is small
     for (int k = 0; k < rows; ++k, column += entries, value += entries) {
-      visit(*row++, entries, column, value);
+      double sum = 0.0;
+      for (int e = 0; e < entries; ++e) sum += value[e] * x[column[e]];
+      result[*row++] -= sum;
     }
   };
   for (const Group& g : groups_) {
@@ -119,53 +120,14 @@ void MassMatrix::for_rows(Visit visit) const {
   }
 }
 
-template <int kSign>
-void MassMatrix::add_off_diagonal(const double* __restrict x, double* __restrict result) const {
-  for_rows([=](int row, auto entries, const int* column, const double* value) {
-    double sum = 0.0;
-    for (int e = 0; e < entries; ++e) sum += value[e] * x[column[e]];
-    result[row] += kSign * sum;
-  });
-  const double* m = segment_value_.data();
-  for (const Segment& s : segments_) {
-    result[s.column] += kSign * multiply_segment(m, s.length, x + s.first_row, kSign * x[s.column],
-                                                 result + s.first_row);
-    m += s.length;
-  }
-}
-
 void MassMatrix::subtract_product(const double* b, const double* __restrict x,
                                   double* __restrict result) const {
   for (std::size_t j = 0; j < diagonal_.size(); ++j) result[j] = b[j] - diagonal_[j] * x[j];
-  add_off_diagonal<-1>(x, result);
-}
-
-void MassMatrix::product(const double* __restrict x, double* __restrict result) const {
-  for (std::size_t j = 0; j < diagonal_.size(); ++j) result[j] = diagonal_[j] * x[j];
-  add_off_diagonal<1>(x, result);
-}
-
-void MassMatrix::products(const double* __restrict x, const double* __restrict y,
-                          double* __restrict first, double* __restrict second) const {
-  for (std::size_t j = 0; j < diagonal_.size(); ++j) {
-    first[j] = diagonal_[j] * x[j];
-    second[j] = diagonal_[j] * y[j];
-  }
-  for_rows([=](int row, auto entries, const int* column, const double* value) {
-    double first_sum = 0.0;
-    double second_sum = 0.0;
-    for (int e = 0; e < entries; ++e) {
-      first_sum += value[e] * x[column[e]];
-      second_sum += value[e] * y[column[e]];
-    }
-    first[row] += first_sum;
-    second[row] += second_sum;
-  });
+  subtract_rows(x, result);
   const double* m = segment_value_.data();
   for (const Segment& s : segments_) {
-    const int r = s.first_row;
-    first[s.column] += multiply_segment(m, s.length, x + r, x[s.column], first + r);
-    second[s.column] += multiply_segment(m, s.length, y + r, y[s.column], second + r);
+    result[s.column] -=
+        multiply_segment(m, s.length, x + s.first_row, -x[s.column], result + s.first_row);
     m += s.length;
   }
 }

@@ -1,4 +1,4 @@
-// The constant mass matrix and its products with vectors.
+// The constant mass matrix and its product with a vector.
 #pragma once
 
 #include <vector>
@@ -20,10 +20,6 @@ class MassMatrix {
 
   /// result = b - M x; n each, no two overlap.
   void subtract_product(const double* b, const double* x, double* result) const;
-  /// result = M x; n each, they do not overlap.
-  void product(const double* x, double* result) const;
-  /// first = M x, second = M y in one sweep; n each, no two overlap.
-  void products(const double* x, const double* y, double* first, double* second) const;
 
  private:
   struct Entry {
@@ -41,13 +37,8 @@ class MassMatrix {
     int first_row = 0;
     int length = 0;
   };
-  /// result += kSign * M x but for the diagonal.
-  template <int kSign>
-  void add_off_diagonal(const double* x, double* result) const;
-  /// Calls visit(row, number of entries, columns, values) for each row; the number is a constant
-  /// where it is small.
-  template <typename Visit>
-  void for_rows(Visit visit) const;
+  /// result -= M x but for diagonal and segments.
+  void subtract_rows(const double* x, double* result) const;
   /// Makes segments, and `loose` of the rest.
   void add_column(int column, const int* row, const double* value, int count,
                   std::vector<Entry>& loose);

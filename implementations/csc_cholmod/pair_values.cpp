@@ -37,8 +37,8 @@ void PairValues::multiply_matrix() {
 }
 
 void PairValues::write_jacobian(double* all_values) const {
-  const double* of_u = Btu_.empty() ? u_.data() : Btu_.data();
-  const double* of_w = Bw_.empty() ? w_.data() : Bw_.data();
+  const double* of_u = Btu();
+  const double* of_w = Bw();
   double* __restrict values = all_values + block_.first.value;
   for (std::size_t i = 0; i < block_.source.size(); ++i) {
     const int source = block_.source[i];
@@ -47,11 +47,23 @@ void PairValues::write_jacobian(double* all_values) const {
 }
 
 void PairValues::add_products(double factor, double* result) const {
-  const double* Bw = Bw_.empty() ? w_.data() : Bw_.data();
+  const double* of_a = Bw();
   const double* u = u_.data();
   double* __restrict rows = result + block_.first.row;
   for (int axis = 0; axis < block_.dimension; ++axis) {
-    for (int k = 0; k < block_.count; ++k) rows[k] += factor * *u++ * *Bw++;
+    for (int k = 0; k < block_.count; ++k) rows[k] += factor * *u++ * *of_a++;
+  }
+}
+
+void PairValues::add_jacobian_product(const double* x, double factor, double* result) const {
+  const double* of_u = Btu();
+  const double* of_w = Bw();
+  double* __restrict rows = result + block_.first.row;
+  for (int e = 0, axis = 0; axis < block_.dimension; ++axis) {
+    for (int k = 0; k < block_.count; ++k, ++e) {
+      rows[k] += factor * (of_w[e] * (x[block_.a[e]] - x[block_.b[e]]) +  // Eq. (7)
+                           of_u[e] * (x[block_.c[e]] - x[block_.d[e]]));
+    }
   }
 }
 

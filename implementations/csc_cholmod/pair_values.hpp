@@ -19,8 +19,12 @@ class PairValues {
   void write_jacobian(double* values) const;
   /// result (all rows) += factor * u . B w.
   void add_products(double factor, double* result) const;
+  /// result (all rows) += factor * the block's rows of Phi_q times x (all places).
+  void add_jacobian_product(const double* x, double factor, double* result) const;
 
  private:
+  [[nodiscard]] const double* Bw() const { return Bw_.empty() ? w_.data() : Bw_.data(); }
+  [[nodiscard]] const double* Btu() const { return Btu_.empty() ? u_.data() : Btu_.data(); }
   void multiply_matrix();
 
   const PairBlock& block_;

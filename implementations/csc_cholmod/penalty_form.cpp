@@ -1,6 +1,7 @@
 // Schedules at set-up; in the step, one gathered sum writes T.
 #include "penalty_form.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "schedule.hpp"
@@ -54,18 +55,14 @@ void PenaltyForm::update_multipliers(double* lambda) const {
   for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];  // Eq. (1)
 }
 
-void PenaltyForm::project_velocity(const double* q, const double* u, double* velocity) {
-  multiply(u, velocity);  // Eq. (6)
-  subtract_rates(q, velocity);
+void PenaltyForm::begin_projection(const double* x, double* right) {
+  std::fill(row_.begin(), row_.end(), 0.0);
+  constraints_.add_jacobian_product(x, -quarter_ * penalty_, row_.data());
+  std::fill_n(right, size(), 0.0);
+  add_row_forces(right);  // Eq. (6)
 }
 
-void PenaltyForm::project_both(const double* q, const double* u, const double* s, double* velocity,
-                               double* acceleration) {
-  multiply(u, s, velocity, acceleration);  // Eq. (6)
-  subtract_rates(q, velocity);
-}
-
-void PenaltyForm::subtract_rates(const double* q, double* velocity) {
+void PenaltyForm::complete_velocity(const double* q, double* velocity) {
   for (const DrivenRow& row : drivers_.rows()) {
     const double factor = -quarter_ * penalty_ * drivers_.rate(row, q);  // Eq. (6)
     constraints_.add_row(row.row, factor, velocity);
@@ -73,9 +70,9 @@ void PenaltyForm::subtract_rates(const double* q, double* velocity) {
 }
 
 void PenaltyForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
-  velocity_terms(q, u, -quarter_ * penalty_, row_.data());
-  constraints_.multiply(row_.data());
-  rows_schedule_.sum(acceleration, constraints_.forces(), acceleration);  // Eq. (6)
+  std::fill(row_.begin(), row_.end(), 0.0);
+  add_velocity_terms(q, u, -quarter_ * penalty_, row_.data());
+  add_row_forces(acceleration);  // Eq. (6)
 }
 
 }  // namespace mbs::csc_cholmod

@@ -28,18 +28,17 @@ class PenaltyForm : public Assembly {
   /// lambda (rows) += alpha Phi.
   void update_multipliers(double* lambda) const;
 
-  /// Eq. (6): velocity is the right-hand side for u.
-  void project_velocity(const double* q, const double* u, double* velocity);
-  /// Eq. (6): the same; acceleration to be completed once u is known.
-  void project_both(const double* q, const double* u, const double* s, double* velocity,
-                    double* acceleration);
+  /// Eq. (6): right = -(dt^2/4) alpha J^T J x of x = u or s, zero behind the unknowns; with the
+  /// Phi_q that is in T, so before evaluate().
+  void begin_projection(const double* x, double* right);
+  /// Eq. (6): velocity -= (dt^2/4) alpha Phi_q^T (dt/2) Phi_t.
+  void complete_velocity(const double* q, double* velocity);
   /// Eq. (6): acceleration -= (dt^2/4)^2 alpha Phi_q^T (Phi-dot_q v + Phi-dot_t).
   void complete_acceleration(const double* q, const double* u, double* acceleration);
 
  private:
   PenaltyForm(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
               Method method);
-  void subtract_rates(const double* q, double* velocity);
 
   double penalty_;                ///< alpha
   HalfPattern pattern_;           ///< of T, in this folder's order

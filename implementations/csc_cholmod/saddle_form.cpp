@@ -62,25 +62,18 @@ void SaddleForm::update_multipliers(double* lambda) const {
   }
 }
 
-void SaddleForm::project_velocity(const double* q, const double* u, double* velocity) {
-  multiply(u, velocity);  // Eq. (13)
-  set_rates(q, velocity);
+void SaddleForm::begin_projection(const double* x, double* right) {
+  std::fill_n(right, size(), 0.0);
+  constraints_.add_jacobian_product(x, -1.0, right + coordinates_.unknowns());  // Eq. (13)
 }
 
-void SaddleForm::project_both(const double* q, const double* u, const double* s, double* velocity,
-                              double* acceleration) {
-  multiply(u, s, velocity, acceleration);  // Eq. (13)
-  set_rates(q, velocity);
-}
-
-void SaddleForm::set_rates(const double* q, double* velocity) {
+void SaddleForm::complete_velocity(const double* q, double* velocity) {
   double* rows = velocity + coordinates_.unknowns();
-  std::fill(rows, rows + row_.size(), 0.0);
-  for (const DrivenRow& row : drivers_.rows()) rows[row.row] = -drivers_.rate(row, q);  // Eq. (13)
+  for (const DrivenRow& row : drivers_.rows()) rows[row.row] -= drivers_.rate(row, q);  // Eq. (13)
 }
 
 void SaddleForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
-  velocity_terms(q, u, -1.0, acceleration + coordinates_.unknowns());  // Eq. (13)
+  add_velocity_terms(q, u, -1.0, acceleration + coordinates_.unknowns());  // Eq. (13)
 }
 
 }  // namespace mbs::csc_cholmod

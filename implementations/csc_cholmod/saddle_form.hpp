@@ -29,18 +29,17 @@ class SaddleForm : public Assembly {
   /// lambda (rows) += (4/dt^2) mu, with what the last solve() kept.
   void update_multipliers(double* lambda) const;
 
-  /// Eq. (13): velocity is the right-hand side for u.
-  void project_velocity(const double* q, const double* u, double* velocity);
-  /// Eq. (13): the same; acceleration to be completed once u is known.
-  void project_both(const double* q, const double* u, const double* s, double* velocity,
-                    double* acceleration);
-  /// Eq. (13): the rows of acceleration = -(dt^2/4) (Phi-dot_q v + Phi-dot_t).
+  /// Eq. (13): right = 0 and -J x of x = u or s, zero behind the unknowns; with the Phi_q that is
+  /// in the matrix, so before evaluate().
+  void begin_projection(const double* x, double* right);
+  /// Eq. (13): the rows of velocity -= (dt/2) Phi_t.
+  void complete_velocity(const double* q, double* velocity);
+  /// Eq. (13): the rows of acceleration -= (dt^2/4) (Phi-dot_q v + Phi-dot_t).
   void complete_acceleration(const double* q, const double* u, double* acceleration);
 
  private:
   SaddleForm(const Model& model, const StepSettings& settings, Method method,
              std::vector<int> number);
-  void set_rates(const double* q, double* velocity);
 
   std::vector<int> place_;        ///< n + rows: place in the order of elimination
   HalfPattern pattern_;           ///< in that order

@@ -19,11 +19,11 @@ CholmodSimulation<Form>::CholmodSimulation(const Model& model, const StepSetting
       v_(model.variables()),
       a_(model.variables()),
       u_(form_.coordinates().all()),
-      s_(model.variables() + 1),
+      s_(form_.coordinates().all()),
+      delta_(form_.coordinates().all()),
       lambda_(model.constraints()),
       right_(form_.size()),
-      second_right_(form_.size()),
-      delta_(model.variables()) {
+      second_right_(form_.size()) {
   const std::vector<double>& constants = form_.coordinates().constants();
   std::copy(constants.begin(), constants.end(), q_.begin() + model.variables());
 }
@@ -75,6 +75,9 @@ StepOutcome CholmodSimulation<Form>::do_step() {
     form_.solve(right_.data(), delta_.data());  // Eq. (4), (12)
     phases_.enter(Phase::other);
     if (update()) outcome.status = StepStatus::converged;
+    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
+      begin_projections();
+    }
     phases_.enter(Phase::evaluation);
     form_.evaluate(q_.data());  // serves the multipliers, the next pass and the projections
     form_.update_multipliers(lambda_.data());
@@ -120,16 +123,26 @@ bool CholmodSimulation<Form>::update() {
 }
 
 template <typename Form>
+void CholmodSimulation<Form>::begin_projections() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  std::copy_n(u_.begin(), v_.size(), delta_.begin());  // driven points have no columns
+  form_.begin_projection(delta_.data(), right_.data());
+  if (settings_.projections != Projections::both) return;
+  form_.begin_projection(s_.data(), second_right_.data());
+}
+
+template <typename Form>
 void CholmodSimulation<Form>::project() {
-  switch (settings_.projections) {
-    case Projections::none:
-      break;
-    case Projections::velocity:
-      project_velocity();
-      break;
-    case Projections::both:
-      project_both();
-      break;
+  if (settings_.projections != Projections::none) {
+    phases_.enter(Phase::projection);
+    form_.complete_velocity(q_.data(), right_.data());
+    correct(right_, u_);
+  }
+  if (settings_.projections == Projections::both) {
+    phases_.enter(Phase::projection);
+    form_.complete_acceleration(q_.data(), u_.data(), second_right_.data());
+    correct(second_right_, s_);
   }
   phases_.enter(Phase::other);
   const double per_half = 2.0 / settings_.step;
@@ -141,23 +154,10 @@ void CholmodSimulation<Form>::project() {
 }
 
 template <typename Form>
-void CholmodSimulation<Form>::project_velocity() {
-  phases_.enter(Phase::projection);
-  form_.project_velocity(q_.data(), u_.data(), right_.data());
+void CholmodSimulation<Form>::correct(const std::vector<double>& right, std::vector<double>& x) {
   phases_.enter(Phase::solve);
-  form_.solve(right_.data(), u_.data());  // Eq. (6), (13)
-}
-
-template <typename Form>
-void CholmodSimulation<Form>::project_both() {
-  phases_.enter(Phase::projection);
-  form_.project_both(q_.data(), u_.data(), s_.data(), right_.data(), second_right_.data());
-  phases_.enter(Phase::solve);
-  form_.solve(right_.data(), u_.data());  // Eq. (6), (13)
-  phases_.enter(Phase::projection);
-  form_.complete_acceleration(q_.data(), u_.data(), second_right_.data());
-  phases_.enter(Phase::solve);
-  form_.solve(second_right_.data(), s_.data());  // Eq. (6), (13)
+  form_.solve(right.data(), delta_.data());  // Eq. (6), (13)
+  for (std::size_t i = 0; i < v_.size(); ++i) x[i] += delta_[i];
 }
 
 template class CholmodSimulation<PenaltyForm>;

@@ -28,19 +28,21 @@ class CholmodSimulation final : public Simulation {
   void predict();
   /// q, u, s grow by Delta q. True if max |Delta q| <= tolerance; NaN is false.
   bool update();
+  /// Right-hand sides of the projections as far as the Phi_q in the matrix gives them: after the
+  /// last correction, before Phi_q is evaluated anew.
+  void begin_projections();
   void project();
-  void project_velocity();
-  void project_both();
+  /// x (n) += the matrix \ right.
+  void correct(const std::vector<double>& right, std::vector<double>& x);
 
   StepSettings settings_;
   Form form_;
-  // All places for q and u (constants and driven points behind the unknowns), n and a zero for s,
-  // else n.
+  // All places for q, u, s and delta (constants and driven points behind the unknowns; zeros in s
+  // and delta), else n.
   std::vector<double> q_, v_, a_;
-  std::vector<double> u_, s_;
+  std::vector<double> u_, s_, delta_;
   std::vector<double> lambda_;                ///< rows
   std::vector<double> right_, second_right_;  ///< form_.size()
-  std::vector<double> delta_;
 };
 
 }  // namespace mbs::csc_cholmod

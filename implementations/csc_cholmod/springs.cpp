@@ -64,23 +64,6 @@ double* Springs::loads(double* __restrict summands) const {
   return summands;
 }
 
-double* Springs::multiply(const double* x, double* __restrict summands) {
-  const int count = block_.count;
-  std::fill(product_.begin(), product_.end(), 0.0);
-  for (int i = 0, axis = 0; axis < block_.dimension; ++axis) {
-    for (int k = 0; k < count; ++k, ++i) {
-      summands[i] = x[block_.free_plus[i]] - x[block_.free_minus[i]];
-      product_[k] += e_[i] * summands[i];
-    }
-  }
-  for (int i = 0, axis = 0; axis < block_.dimension; ++axis) {
-    for (int k = 0; k < count; ++k, ++i) {
-      summands[i] = across_[k] * summands[i] + along_[k] * product_[k] * e_[i];  // Eq. (6)
-    }
-  }
-  return summands + e_.size();
-}
-
 double* Springs::tangent(double* __restrict products) const {
   const int count = block_.count;
   const double* e = e_.data();

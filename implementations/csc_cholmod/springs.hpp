@@ -21,10 +21,8 @@ class Springs {
   /// Takes lengths, directions and forces at q and u (all places, m; u = (dt/2) v).
   /// Eqs. (11), (18)
   void evaluate(const double* q, const double* u);
-  /// summands = -(dt^2/4) F e; returns their end, as the next two do.
+  /// summands = -(dt^2/4) F e; returns their end, as the next does.
   double* loads(double* summands) const;
-  /// summands = [(dt/2) C + (dt^2/4) K] x at r_a, x (n, then a zero).
-  double* multiply(const double* x, double* summands);
   /// products: the values of a 2 x 2 block above.
   double* tangent(double* products) const;
 

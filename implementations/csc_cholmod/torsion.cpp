@@ -68,27 +68,9 @@ void TorsionSprings::evaluate(const double* q, const double* u) {
   }
 }
 
-double* TorsionSprings::write(const Numbers& numbers, double factor, double* summands) const {
-  for (int i = 0; i < 2 * dimension_; ++i) *summands++ = factor * numbers.g[i];
-  return summands;
-}
-
 double* TorsionSprings::loads(double* summands) const {
-  for (const Numbers& n : numbers_) summands = write(n, n.torque, summands);  // Eqs. (11), (18)
-  return summands;
-}
-
-double* TorsionSprings::multiply(const double* x, double* summands) const {
-  const Numbers* n = numbers_.data();
-  for (const TorsionElement& e : elements_) {
-    const Vector from = difference(x, e.free_a, e.free_b);
-    const Vector to = difference(x, e.free_c, e.free_d);
-    double product = 0.0;
-    for (int axis = 0; axis < dimension_; ++axis) {
-      product += n->g[dimension_ + axis] * to[axis] - n->g[axis] * from[axis];
-    }
-    summands = write(*n, n->weight * product, summands);  // Eq. (6)
-    ++n;
+  for (const Numbers& n : numbers_) {
+    for (int i = 0; i < 2 * dimension_; ++i) *summands++ = n.torque * n.g[i];  // Eqs. (11), (18)
   }
   return summands;
 }

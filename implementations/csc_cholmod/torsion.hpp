@@ -21,7 +21,6 @@ class TorsionSprings {
   /// Eqs. (11), (18)
   void evaluate(const double* q, const double* u);
   double* loads(double* summands) const;
-  double* multiply(const double* x, double* summands) const;
   double* tangent(double* products) const;
 
  private:
@@ -31,7 +30,6 @@ class TorsionSprings {
     double weight = 0.0;        ///< (dt/2) c + (dt^2/4) k; of laws their slopes
   };
   [[nodiscard]] ElementForce force(const TorsionElement& element, double angle, double rate) const;
-  double* write(const Numbers& numbers, double factor, double* summands) const;
 
   int dimension_;
   const std::vector<TorsionElement>& elements_;
