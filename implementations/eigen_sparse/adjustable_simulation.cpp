@@ -26,9 +26,9 @@ void AdjustableSimulation<Form>::do_set_state(const State& state) {
 template <class Form>
 StepOutcome AdjustableSimulation<Form>::do_step() {
   StepOutcome outcome{StepStatus::pass_limit, 0, 0};
+  ++steps_;
   this->predict();
-  const bool projected = ++steps_ % settings_.projections_every == 0;
-  if (!iterate(outcome) || (projected && !project(outcome))) {
+  if (!iterate(outcome) || (projected() && !project(outcome))) {
     outcome.status = StepStatus::factorization_failed;
   }
   if (outcome.status != StepStatus::converged) factors_due_ = true;
@@ -42,7 +42,7 @@ bool AdjustableSimulation<Form>::iterate(StepOutcome& outcome) {
   const bool every_pass = settings_.multipliers == MultiplierUpdate::every_pass;
   double previous = 0.0;  // max |delta| of the pass before
   bool previous_converged = false;
-  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+  while (!this->passes_end(outcome)) {
     const bool first = ++outcome.passes == 1;
     if (settings_.tangent == TangentReuse::none) factors_due_ = true;
     if (settings_.tangent == TangentReuse::step && first) factors_due_ = true;
@@ -53,8 +53,10 @@ bool AdjustableSimulation<Form>::iterate(StepOutcome& outcome) {
     form_.solve();  // Eqs. (4), (12)
     const double largest = this->correct();
     const bool converged = largest <= settings_.tolerance;
-    if (every_pass || converged) this->update_multipliers();
     if (converged && (every_pass || previous_converged)) outcome.status = StepStatus::converged;
+    if (projected() && !refined_ && this->passes_end(outcome)) this->keep_for_projections();
+    this->evaluate();
+    if (every_pass || converged) this->update_multipliers();
     if (settings_.tangent == TangentReuse::kept && !first && !converged &&
         !(largest <= 0.25 * previous)) {
       factors_due_ = true;
@@ -77,11 +79,15 @@ bool AdjustableSimulation<Form>::factorize(StepOutcome& outcome) {
   return !factors_due_;
 }
 
+template <class Form>
+bool AdjustableSimulation<Form>::projected() const {
+  return settings_.projections != Projections::none && steps_ % settings_.projections_every == 0;
+}
+
 /// False if a factorization failed.
 template <class Form>
 bool AdjustableSimulation<Form>::project(StepOutcome& outcome) {
   const double h = settings_.step, tolerance = settings_.tolerance;
-  if (settings_.projections == Projections::none) return true;
   if (!refined_) {
     this->project_velocities();
   } else if (!refine(mechanism_.v, &Mechanism::rates, (2.0 / h) * tolerance, outcome)) {

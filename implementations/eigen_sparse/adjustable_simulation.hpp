@@ -22,6 +22,8 @@ class AdjustableSimulation final : public SparseSimulation<Form> {
 
   bool iterate(StepOutcome& outcome);
   bool factorize(StepOutcome& outcome);
+  /// Whether this step is.
+  [[nodiscard]] bool projected() const;
   bool project(StepOutcome& outcome);
   bool refine(Vector& x, Terms terms, double tolerance, StepOutcome& outcome);
   void form_refinement(const Vector& x);

@@ -82,4 +82,27 @@ void Constraints::velocity_terms(const Vector& v, Vector& result) const {
   result.tail(result.size() - quadratic_).setZero();  // Eq. (8)
 }
 
+template <int kDimension>
+void Constraints::add_products(const double* x, double* result) const {
+  const double* row = jacobian_.valuePtr();
+  const int *columns = jacobian_.innerIndexPtr(), *starts = jacobian_.outerIndexPtr();
+  const auto add = [&](int width) {
+    using Pair = Eigen::Array2d;
+    Pair along(0.0, 0.0);
+    for (int i = 0; i < width; ++i) along += row[i] * Eigen::Map<const Pair>(x + 2 * columns[i]);
+    for (int i = 0; i < width; ++i) Eigen::Map<Pair>(result + 2 * columns[i]) += row[i] * along;
+    row += width;
+    columns += width;
+  };
+  for (int k = 0; k < to_ground_; ++k) add(kDimension);
+  for (int k = to_ground_; k < distances_; ++k) add(2 * kDimension);
+  for (int k = distances_; k < jacobian_.rows(); ++k) add(starts[k + 1] - starts[k]);
+}
+
+void Constraints::multiply_squared(const Pairs& x, Pairs& result) const {
+  result.setZero();
+  dimension_ == 2 ? add_products<2>(x.data(), result.data())
+                  : add_products<3>(x.data(), result.data());
+}
+
 }  // namespace mbs::eigen_sparse

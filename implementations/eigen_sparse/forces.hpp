@@ -1,4 +1,4 @@
-// Forces that depend on q' and v': what they add to Q, T and the right-hand sides of Eq. (6).
+// Forces that depend on q' and v': what they add to Q, T and the right-hand sides of Eq. (15).
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ class Force {
   virtual void apply(const Vector& q, const Vector& v, Vector& force) = 0;
   /// Adds (dt/2) C + (dt^2/4) K to the values of the matrix laid out at set-up, Eq. (5).
   virtual void add_to_tangent(double* tangent) const = 0;
-  /// Adds [(dt/2) C + (dt^2/4) K] x to `result` (n), Eq. (6); of `x` the first n entries count.
+  /// Adds [(dt/2) C + (dt^2/4) K] x to `result` (n), Eq. (15).
   virtual void add_product(const Vector& x, Vector& result) = 0;
 };
 
@@ -37,7 +37,7 @@ struct ForceSetup {
   double step;
 };
 
-/// (dt/2) damping + (dt^2/4) stiffness: the weight of g g^T in Eqs. (5) and (6).
+/// (dt/2) damping + (dt^2/4) stiffness: the weight of g g^T in Eqs. (5) and (15).
 template <class Element>
 double weight_of(const Element& element, double step) {
   return 0.5 * step * element.damping + 0.25 * step * step * element.stiffness;

@@ -14,7 +14,8 @@ Mechanism::Mechanism(const Model& model, Coordinates numbering)
       q(Vector::Zero(coordinates.extended())),
       v(Vector::Zero(coordinates.extended())),
       a(Vector::Zero(model.variables())),
-      lambda(Vector::Zero(model.constraints())) {
+      lambda(Vector::Zero(model.constraints())),
+      pairs(model.variables(), 2) {
   coordinates.gather({model.force().begin(), model.force().end()}, force);
   const std::vector<double>& fixed = coordinates.fixed();
   std::copy(fixed.begin(), fixed.end(), q.data() + model.variables());
@@ -89,8 +90,13 @@ void Mechanism::add_to_tangent(double* values) const {
 }
 
 void Mechanism::multiply(const Vector& x, Vector& result) {
-  result.noalias() = mass * x.head(a.size());
+  result.noalias() = mass * x;
   for (const auto& element : in_tangent()) element->add_product(x, result);
+}
+
+const Pairs& Mechanism::motion() {
+  for (Eigen::Index i = 0; i < a.size(); ++i) pairs.row(i) << v[i], a[i];
+  return pairs;
 }
 
 void Mechanism::rates(Vector& result) const {

@@ -37,9 +37,10 @@ struct Mechanism {
   void unbalanced_force(const Vector& multiplier, Vector& result);
   /// Adds C and K to the values of the matrix that forces were made for.
   void add_to_tangent(double* values) const;
-  /// result = [M + (dt/2) C + (dt^2/4) K] x (n) with C and K of the last matrix, Eqs. (6), (13) and
-  /// (15); of `x` the first n entries count.
+  /// result = [M + (dt/2) C + (dt^2/4) K] x (n) with C and K of the last matrix, Eq. (15).
   void multiply(const Vector& x, Vector& result);
+  /// v' and a' (n x 2).
+  const Pairs& motion();
   /// result = Phi_t (m), Eqs. (7) and (8).
   void rates(Vector& result) const;
   /// result = d/dt (Phi_q) v' + d/dt Phi_t (m), Eqs. (7) and (8).
@@ -58,6 +59,7 @@ struct Mechanism {
 
   Vector q, v;  // extended by fixed points
   Vector a, lambda;
+  Pairs pairs;  // what motion() returns
 };
 
 /// Solves of a refinement at most: projections, velocities and accelerations of RATTLE.

@@ -23,7 +23,8 @@ class PenaltyForm {
                  quarter_ * penalty_),
         solver_(tangent_.matrix(), Definiteness::positive),
         delta_(model.variables()),
-        multiplier_(Vector::Zero(model.constraints())) {
+        multiplier_(Vector::Zero(model.constraints())),
+        kept_(model.variables(), 2) {
     mechanism.add_forces(model, layout(), settings.step);
   }
 
@@ -41,18 +42,24 @@ class PenaltyForm {
     mechanism_.unbalanced_force(multiplier_, delta_);
     delta_ *= quarter_;
   }
-  /// Right-hand sides of Eq. (6).
+  /// Keeps J^T J v* and J^T J a* for the projections: before Phi_q is evaluated anew.
+  void keep_for_projections() {
+    mechanism_.constraints.multiply_squared(mechanism_.motion(), kept_);
+  }
+  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*.
   void form_velocity_projection() {
-    mechanism_.multiply(mechanism_.v, delta_);
+    delta_ = kept_.col(0);
     if (mechanism_.drivers) {
       mechanism_.rates(multiplier_);
-      add_weighted();
+      add_by_constraints();
     }
+    delta_ *= -quarter_ * penalty_;
   }
   void form_acceleration_projection() {
-    mechanism_.multiply(mechanism_.a, delta_);
+    delta_ = kept_.col(1);
     mechanism_.accelerations(multiplier_);
-    add_weighted();
+    add_by_constraints();
+    delta_ *= -quarter_ * penalty_;
   }
 
   /// Begins to refine a projection.
@@ -60,8 +67,8 @@ class PenaltyForm {
   /// Right-hand side of Eq. (15): `change` is v* - v' (n), `violation` Phi_q v' + Phi_t (m).
   void form_refinement(const Vector& change, const Vector& violation) {
     mechanism_.multiply(change, delta_);
-    multiplier_ = violation;
-    add_weighted();
+    multiplier_ = (-quarter_ * penalty_) * violation;
+    add_by_constraints();
   }
   /// Accepts what solve() made of it.
   void accept_refinement() {}
@@ -76,8 +83,7 @@ class PenaltyForm {
   }
 
  private:
-  void add_weighted() {
-    multiplier_ *= -quarter_ * penalty_;
+  void add_by_constraints() {
     delta_.noalias() += mechanism_.constraints.jacobian().transpose() * multiplier_;
   }
 
@@ -88,6 +94,7 @@ class PenaltyForm {
   Solver solver_;
   Vector delta_;       // n: right-hand sides, overwritten by solutions
   Vector multiplier_;  // m: what Phi_q^T is applied to
+  Pairs kept_;         // n x 2: J^T J v* and J^T J a*
 };
 
 }  // namespace mbs::eigen_sparse

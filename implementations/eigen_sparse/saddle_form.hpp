@@ -19,7 +19,8 @@ class SaddleForm {
         equations_(model, epsilon_, mechanism, stiffness_of(model)),
         delta_(model.variables()),
         multiplier_(model.constraints()),
-        nu_(model.constraints()) {
+        nu_(model.constraints()),
+        kept_(model.constraints(), 2) {
     mechanism.add_forces(model, layout(), settings.step);
   }
 
@@ -39,16 +40,20 @@ class SaddleForm {
     delta_ *= quarter_;
     multiplier_ = -mechanism_.constraints.phi();
   }
-  /// Right-hand sides of Eq. (13).
+  /// Keeps J v* and J a* for the projections: before Phi_q is evaluated anew.
+  void keep_for_projections() {
+    kept_.noalias() = mechanism_.constraints.jacobian() * mechanism_.motion();
+  }
+  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*.
   void form_velocity_projection() {
-    mechanism_.multiply(mechanism_.v, delta_);
+    delta_.setZero();
     mechanism_.rates(multiplier_);
-    multiplier_ = -multiplier_;
+    multiplier_ = -multiplier_ - kept_.col(0);
   }
   void form_acceleration_projection() {
-    mechanism_.multiply(mechanism_.a, delta_);
+    delta_.setZero();
     mechanism_.accelerations(multiplier_);
-    multiplier_ = -multiplier_;
+    multiplier_ = -multiplier_ - kept_.col(1);
   }
 
   /// Begins to refine a projection with nu = 0.
@@ -82,6 +87,7 @@ class SaddleForm {
   Vector delta_;       // n: first blocks of right-hand sides, overwritten by solutions
   Vector multiplier_;  // m: second blocks
   Vector nu_;          // m: of the projection that is being refined
+  Pairs kept_;         // m x 2: J v* and J a*
 };
 
 }  // namespace mbs::eigen_sparse

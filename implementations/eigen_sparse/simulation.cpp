@@ -24,7 +24,7 @@ template <class Form>
 StepOutcome SparseSimulation<Form>::do_step() {
   StepOutcome outcome{StepStatus::pass_limit, 0};
   predict();
-  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+  while (!passes_end(outcome)) {
     ++outcome.passes;
     phases_.enter(Phase::evaluation);
     form_.form_residual();
@@ -38,6 +38,8 @@ StepOutcome SparseSimulation<Form>::do_step() {
     phases_.enter(Phase::solve);
     form_.solve();  // Eqs. (4), (12)
     if (correct() <= settings_.tolerance) outcome.status = StepStatus::converged;
+    if (settings_.projections != Projections::none && passes_end(outcome)) keep_for_projections();
+    evaluate();
     update_multipliers();
   }
   if (settings_.projections != Projections::none) project_velocities();
@@ -52,17 +54,30 @@ void SparseSimulation<Form>::predict() {
   if (m.drivers) m.drivers->sample(time(), m.q, m.v, m.constraints.value(), m.force);
   phases_.enter(Phase::other);
   m.predict(settings_.step, form_.delta());
-  phases_.enter(Phase::evaluation);
-  m.constraints.evaluate(m.q);
+  evaluate();
 }
 
 template <class Form>
 double SparseSimulation<Form>::correct() {
   phases_.enter(Phase::other);
-  const double largest = mechanism_.correct(settings_.step, form_.delta());
+  return mechanism_.correct(settings_.step, form_.delta());
+}
+
+template <class Form>
+bool SparseSimulation<Form>::passes_end(const StepOutcome& outcome) const {
+  return outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+}
+
+template <class Form>
+void SparseSimulation<Form>::keep_for_projections() {
+  phases_.enter(Phase::projection);
+  form_.keep_for_projections();
+}
+
+template <class Form>
+void SparseSimulation<Form>::evaluate() {
   phases_.enter(Phase::evaluation);
   mechanism_.constraints.evaluate(mechanism_.q);
-  return largest;
 }
 
 template <class Form>
@@ -78,7 +93,7 @@ void SparseSimulation<Form>::project_velocities() {
   phases_.enter(Phase::solve);
   form_.solve();  // Eqs. (6), (13), velocities
   phases_.enter(Phase::projection);
-  mechanism_.v.head(form_.delta().size()) = form_.delta();
+  mechanism_.v.head(form_.delta().size()) += form_.delta();
 }
 
 template <class Form>
@@ -86,7 +101,8 @@ void SparseSimulation<Form>::project_accelerations() {
   form_.form_acceleration_projection();
   phases_.enter(Phase::solve);
   form_.solve();  // Eqs. (6), (13), accelerations
-  mechanism_.a.swap(form_.delta());
+  phases_.enter(Phase::projection);
+  mechanism_.a += form_.delta();
 }
 
 template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;

@@ -27,8 +27,14 @@ class SparseSimulation : public Simulation {
 
   /// Drivers, q', v', a' and the constraints there.
   void predict();
-  /// Applies delta and evaluates the constraints at the new q'; returns max |delta|.
+  /// Applies delta; returns max |delta|.
   double correct();
+  /// Whether no pass follows, once `outcome` knows of the present one's correction.
+  [[nodiscard]] bool passes_end(const StepOutcome& outcome) const;
+  /// Keeps what the projections need of J, between correct() and evaluate() of the last pass.
+  void keep_for_projections();
+  /// The constraints at the new q'.
+  void evaluate();
   void update_multipliers();
   void project_velocities();
   void project_accelerations();

@@ -105,7 +105,7 @@ void Springs<kDimension, kFreeEnds, kTriangle>::add_product(const Vector& x, Vec
     }
     for (int axis = 0; axis < kDimension; ++axis) {
       const double entry = (s.along - s.across) * along * s.e[axis] + s.across * d[axis];
-      result[s.a[axis]] += entry;  // Eq. (6)
+      result[s.a[axis]] += entry;  // Eq. (15)
       if constexpr (kFreeEnds == 2) result[s.b[axis]] -= entry;
     }
   }

@@ -99,9 +99,9 @@ void TorsionSprings<kDimension>::add_to_tangent(double* tangent) const {
 
 template <int kDimension>
 void TorsionSprings<kDimension>::add_product(const Vector& x, Vector& result) {
-  torque_.noalias() = gradients_ * x.head(gradients_.cols());
+  torque_.noalias() = gradients_ * x;
   torque_.array() *= weight_.array();
-  result.noalias() += gradients_.transpose() * torque_;  // Eq. (6)
+  result.noalias() += gradients_.transpose() * torque_;  // Eq. (15)
 }
 
 }  // namespace
