@@ -183,6 +183,28 @@ void Constraints<D>::multiply(const double* Phi_q, const double* x, double* y) c
 }
 
 template <int D>
+void Constraints<D>::add_products(double s, const double* Phi_q, const double* x, double* y) const {
+  for (const auto& [a, b, value] : distances_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) sum += Phi_q[i] * (x[a + i] - x[b + i]);
+    for (int i = 0; i < D; ++i) {
+      const double product = Phi_q[i] * (s * sum);
+      y[a + i] += product;
+      y[b + i] -= product;
+    }
+    Phi_q += 2 * D;
+  }
+  for (std::size_t k = distances_.size(); k + 1 < first_.size(); ++k) {
+    const int* slot = slot_.data() + first_[k];
+    const int length = first_[k + 1] - first_[k];
+    double sum = 0.0;
+    for (int e = 0; e < length; ++e) sum += Phi_q[e] * x[slot[e]];
+    for (int e = 0; e < length; ++e) y[slot[e]] += Phi_q[e] * (s * sum);
+    Phi_q += length;
+  }
+}
+
+template <int D>
 void Constraints<D>::second_derivative(const double* v, double* result) const {
   for (const auto& [a, b, value] : distances_) {
     double sum = 0.0;
