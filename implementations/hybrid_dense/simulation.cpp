@@ -213,10 +213,11 @@ void HybridSimulation<D, System>::multiply_jacobian() {
     if (both) constraints_.multiply(J, a, right_a);
   } else {
     std::fill_n(right_v, slots_.total, 0.0);
-    constraints_.add_products(minus_s_, J, v, right_v);
     if (both) {
       std::fill_n(right_a, slots_.total, 0.0);
-      constraints_.add_products(minus_s_, J, a, right_a);
+      constraints_.template add_products<2>(minus_s_, J, {v, a}, {right_v, right_a});
+    } else {
+      constraints_.template add_products<1>(minus_s_, J, {v}, {right_v});
     }
   }
   write_driven_velocities(1.0);
@@ -232,9 +233,8 @@ void HybridSimulation<D, System>::project() {
     if constexpr (System::kSaddle) {
       static_cast<void>(has_y);
       for (long k = 0; k < m_; ++k) y_[k] = -(right[k] + y_[k]);
-      std::fill_n(difference.data(), n_, 0.0);
       phases_.enter(Phase::solve);
-      system_.solve(difference.data(), y_.data());
+      system_.solve_constraints(difference.data(), y_.data());
     } else {
       if (has_y) {
         for (long k = 0; k < m_; ++k) y_[k] *= minus_s_;
