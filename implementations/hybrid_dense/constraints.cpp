@@ -183,6 +183,40 @@ void Constraints<D>::multiply(const double* Phi_q, const double* x, double* y) c
 }
 
 template <int D>
+template <int Count>
+void Constraints<D>::add_products(double s, const double* Phi_q, const double* const (&x)[Count],
+                                  double* const (&y)[Count]) const {
+  for (const auto& [a, b, value] : distances_) {
+    double sum[Count] = {};
+    for (int i = 0; i < D; ++i) {
+      for (int r = 0; r < Count; ++r) sum[r] += Phi_q[i] * (x[r][a + i] - x[r][b + i]);
+    }
+    for (int r = 0; r < Count; ++r) sum[r] *= s;
+    for (int i = 0; i < D; ++i) {
+      for (int r = 0; r < Count; ++r) {
+        const double product = Phi_q[i] * sum[r];
+        y[r][a + i] += product;
+        y[r][b + i] -= product;
+      }
+    }
+    Phi_q += 2 * D;
+  }
+  for (std::size_t k = distances_.size(); k + 1 < first_.size(); ++k) {
+    const int* slot = slot_.data() + first_[k];
+    const int length = first_[k + 1] - first_[k];
+    double sum[Count] = {};
+    for (int e = 0; e < length; ++e) {
+      for (int r = 0; r < Count; ++r) sum[r] += Phi_q[e] * x[r][slot[e]];
+    }
+    for (int r = 0; r < Count; ++r) sum[r] *= s;
+    for (int e = 0; e < length; ++e) {
+      for (int r = 0; r < Count; ++r) y[r][slot[e]] += Phi_q[e] * sum[r];
+    }
+    Phi_q += length;
+  }
+}
+
+template <int D>
 void Constraints<D>::second_derivative(const double* v, double* result) const {
   for (const auto& [a, b, value] : distances_) {
     double sum = 0.0;
@@ -234,5 +268,13 @@ void Constraints<D>::add_accelerations(const double* Phi_q, const double* fixed,
 
 template class Constraints<2>;
 template class Constraints<3>;
+template void Constraints<2>::add_products(double, const double*, const double* const (&)[1],
+                                           double* const (&)[1]) const;
+template void Constraints<2>::add_products(double, const double*, const double* const (&)[2],
+                                           double* const (&)[2]) const;
+template void Constraints<3>::add_products(double, const double*, const double* const (&)[1],
+                                           double* const (&)[1]) const;
+template void Constraints<3>::add_products(double, const double*, const double* const (&)[2],
+                                           double* const (&)[2]) const;
 
 }  // namespace mbs::hybrid_dense

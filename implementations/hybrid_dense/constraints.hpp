@@ -28,6 +28,10 @@ class Constraints {
   void add_forces(const double* Phi_q, const double* y, double* f) const;
   /// y = Phi_q x.
   void multiply(const double* Phi_q, const double* x, double* y) const;
+  /// y_r += s Phi_q^T Phi_q x_r for `Count` vectors at once.
+  template <int Count>
+  void add_products(double s, const double* Phi_q, const double* const (&x)[Count],
+                    double* const (&y)[Count]) const;
   /// The part of the second derivative of Phi that is free of accelerations, without driven ones.
   void second_derivative(const double* v, double* result) const;
   /// With v (or a) of driven points alone in `fixed`: result += Phi_t (or its like of second

@@ -215,35 +215,6 @@ void Forces<D>::add_tangent(double* T) const {
   }
 }
 
-template <int D>
-void Forces<D>::add_product(const double* x, double* y) const {
-  for (std::size_t k = 0; k < lines_.size(); ++k) {
-    const auto& [a, b, stiffness, damping, length, law, factor] = lines_[k];
-    const Vector<D> d = difference<D>(x, a, b);
-    for (int i = 0; i < D; ++i) {
-      double sum = 0.0;
-      for (int j = 0; j < D; ++j) sum += blocks_[k].values[i * D + j] * d[j];
-      y[a + i] += sum;
-      y[b + i] -= sum;
-    }
-  }
-  for (std::size_t k = 0; k < angles_.size(); ++k) {
-    const Angle& angle = angles_[k];
-    const auto& [weight, g] = gradients_[k];
-    double sum = 0.0;
-    for (int i = 0; i < D; ++i) {
-      sum += g[i] * (x[angle.a + i] - x[angle.b + i]) +
-             g[2 * D + i] * (x[angle.c + i] - x[angle.d + i]);
-    }
-    for (int i = 0; i < D; ++i) {
-      y[angle.a + i] += weight * sum * g[i];
-      y[angle.b + i] += weight * sum * g[D + i];
-      y[angle.c + i] += weight * sum * g[2 * D + i];
-      y[angle.d + i] += weight * sum * g[3 * D + i];
-    }
-  }
-}
-
 template class Forces<2>;
 template class Forces<3>;
 

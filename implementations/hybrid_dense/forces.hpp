@@ -25,7 +25,7 @@ class Forces {
 
   /// Factors of laws, at time t.
   void drive(double t);
-  /// f -= Q of these; also what add_tangent() and add_product() are of.
+  /// f -= Q of these; also what add_tangent() is of.
   void evaluate(const double* q, const double* v, double* f);
 
   /// (row, column), row >= column, of what add_tangent() adds to.
@@ -34,8 +34,6 @@ class Forces {
   void schedule(const Schedule::Position& position);
   /// T += (dt/2) C + (dt^2/4) K.
   void add_tangent(double* T) const;
-  /// y += ((dt/2) C + (dt^2/4) K) x.
-  void add_product(const double* x, double* y) const;
 
  private:
   struct Line {

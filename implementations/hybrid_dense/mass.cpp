@@ -16,16 +16,13 @@ struct Cursor {
 };
 
 // Rows of `Length` entries, 0: of `length`.
-template <int Length, int Count>
-void multiply_rows(int length, int rows, Cursor& at, const double* const (&x)[Count],
-                   double* const (&y)[Count]) {
+template <int Length>
+void multiply_rows(int length, int rows, Cursor& at, const double* x, double* y) {
   if constexpr (Length > 0) length = Length;
   for (int r = 0; r < rows; ++r) {
-    double sum[Count] = {};
-    for (int e = 0; e < length; ++e) {
-      for (int k = 0; k < Count; ++k) sum[k] += at.value[e] * x[k][at.column[e]];
-    }
-    for (int k = 0; k < Count; ++k) y[k][*at.row] = sum[k];
+    double sum = 0.0;
+    for (int e = 0; e < length; ++e) sum += at.value[e] * x[at.column[e]];
+    y[*at.row] = sum;
     ++at.row;
     at.column += length;
     at.value += length;
@@ -70,8 +67,7 @@ Mass::Mass(const Model& model, const Slots& slots) : panels_(slots.n) {
   }
 }
 
-template <int Count>
-void Mass::multiply(const double* const (&x)[Count], double* const (&y)[Count]) const {
+void Mass::multiply(const double* x, double* y) const {
   if (dense_.data() != nullptr) {
     hybrid_dense::multiply(panels_, dense_.data(), x, y);
     return;
@@ -96,8 +92,5 @@ void Mass::multiply(const double* const (&x)[Count], double* const (&y)[Count]) 
     }
   }
 }
-
-template void Mass::multiply<1>(const double* const (&)[1], double* const (&)[1]) const;
-template void Mass::multiply<2>(const double* const (&)[2], double* const (&)[2]) const;
 
 }  // namespace mbs::hybrid_dense

@@ -14,9 +14,8 @@ class Mass {
  public:
   Mass(const Model& model, const Slots& slots);
 
-  /// y_r = M x_r for `Count` vectors at once.
-  template <int Count>
-  void multiply(const double* const (&x)[Count], double* const (&y)[Count]) const;
+  /// y = M x.
+  void multiply(const double* x, double* y) const;
 
  private:
   struct Group {  // rows of `length` entries

@@ -162,38 +162,26 @@ void solve(const Panels& panels, const double* Z, double* x) {
   }
 }
 
-template <int Count>
-void multiply(const Panels& panels, const double* A, const double* const (&x)[Count],
-              double* const (&y)[Count]) {
+void multiply(const Panels& panels, const double* A, const double* x, double* y) {
   for (long p = 0; p < panels.count; ++p) {
     const double* panel = A + Panels::start(p);
-    Vec x_p[Count], acc[Count][W] = {};
-    for (int k = 0; k < Count; ++k) x_p[k] = load(x[k] + p * W);
+    const Vec x_p = load(x + p * W);
+    Vec acc[W] = {};
     for (long j = 0; j < p * W; j += W) {
-      Vec column[W];
-      for (int t = 0; t < W; ++t) column[t] = load(panel + (j + t) * W);
-      for (int k = 0; k < Count; ++k) {
-        Vec down[W];
-        for (int t = 0; t < W; ++t) {
-          acc[k][t] += column[t] * broadcast(x[k][j + t]);
-          down[t] = column[t] * x_p[k];
-        }
-        store(y[k] + j, load(y[k] + j) + sums(down));
+      Vec down[W];
+      for (int t = 0; t < W; ++t) {
+        const Vec column = load(panel + (j + t) * W);
+        acc[t] += column * broadcast(x[j + t]);
+        down[t] = column * x_p;
       }
+      store(y + j, load(y + j) + sums(down));
     }
     panel += p * W * W;  // the diagonal block, of which both halves are there
-    for (int k = 0; k < Count; ++k) {
-      Vec sum = load(panel) * broadcast(x[k][p * W]);
-      for (int t = 1; t < W; ++t) sum += load(panel + t * W) * broadcast(x[k][p * W + t]);
-      for (int t = 0; t < W; ++t) sum += acc[k][t];
-      store(y[k] + p * W, sum);
-    }
+    Vec sum = load(panel) * broadcast(x[p * W]);
+    for (int t = 1; t < W; ++t) sum += load(panel + t * W) * broadcast(x[p * W + t]);
+    for (int t = 0; t < W; ++t) sum += acc[t];
+    store(y + p * W, sum);
   }
 }
-
-template void multiply<1>(const Panels&, const double*, const double* const (&)[1],
-                          double* const (&)[1]);
-template void multiply<2>(const Panels&, const double*, const double* const (&)[2],
-                          double* const (&)[2]);
 
 }  // namespace mbs::hybrid_dense

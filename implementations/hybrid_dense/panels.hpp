@@ -30,10 +30,8 @@ struct Panels {
 /// A x = b with Z of factorize(); x, padded to whole vectors by zeros, is b when it arrives.
 void solve(const Panels& panels, const double* Z, double* x);
 
-/// y_r = A x_r for `Count` vectors at once, A symmetric. All are padded by zeros; A's padding is
-/// not read for anything that counts.
-template <int Count>
-void multiply(const Panels& panels, const double* A, const double* const (&x)[Count],
-              double* const (&y)[Count]);
+/// y = A x, A symmetric. Both are padded by zeros; A's padding is not read for anything that
+/// counts.
+void multiply(const Panels& panels, const double* A, const double* x, double* y);
 
 }  // namespace mbs::hybrid_dense

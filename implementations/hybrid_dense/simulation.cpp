@@ -44,6 +44,10 @@ StepOutcome HybridSimulation<D, System>::do_step() {
       system_.solve(Delta_q_.data());  // Eq. (4)
     }
     if (correct()) outcome.status = StepStatus::converged;
+    if (settings_.projections != Projections::none &&
+        (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes)) {
+      multiply_jacobian();
+    }
     evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
     phases_.enter(Phase::other);
     if constexpr (System::kSaddle) {
@@ -63,9 +67,7 @@ void HybridSimulation<D, System>::do_set_state(const State& state) {
   std::ranges::copy(state.a, a_.data());
   for (long k = 0; k < m_; ++k) lambda_[k] = state.lambda[constraints_.model_row(k)];
   // What a step that was not finite left behind the last entries, where zeros belong.
-  for (Array* one : {&v_, &a_, &Delta_q_, &right_v_, &right_a_}) {
-    std::fill_n(one->data() + n_, padded(n_) - n_, 0.0);
-  }
+  std::fill_n(Delta_q_.data() + n_, padded(n_) - n_, 0.0);
   std::fill_n(y_.data() + m_, padded(m_) - m_, 0.0);
 }
 
@@ -131,8 +133,7 @@ void HybridSimulation<D, System>::drive() {
   }
 }
 
-// Into v'; with factor 0 zeros, for products with matrices, which have no columns for driven
-// points.
+// Into v'; with factor 0 zeros, for products with Phi_q, which has no columns for driven points.
 template <int D, class System>
 void HybridSimulation<D, System>::write_driven_velocities(double factor) {
   for (const DrivenPoint& driven : model_.driven_points()) {
@@ -168,7 +169,7 @@ template <int D, class System>
 void HybridSimulation<D, System>::evaluate_residual() {
   phases_.enter(Phase::evaluation);
   double* f = Delta_q_.data();
-  mass_.multiply<1>({a_.data()}, {f});
+  mass_.multiply(a_.data(), f);
   for (long i = 0; i < n_; ++i) f[i] -= Q_[i];
   if constexpr (System::kSaddle) {
     constraints_.add_forces(Phi_q_.data(), lambda_.data(), f);
@@ -198,49 +199,60 @@ bool HybridSimulation<D, System>::correct() {
   return large == 0;
 }
 
-// Eq. (6) or (13), with the last pass's matrix. M v* and M a* are one product: a* does not depend
-// on v'.
+// What the projections take from J, the Phi_q in the last pass's matrix: before Phi_q is evaluated
+// anew.
+template <int D, class System>
+void HybridSimulation<D, System>::multiply_jacobian() {
+  phases_.enter(Phase::projection);
+  const bool both = settings_.projections == Projections::both;
+  const double *J = Phi_q_.data(), *v = v_.data(), *a = a_.data();
+  double *right_v = right_v_.data(), *right_a = right_a_.data();
+  write_driven_velocities(0.0);
+  if constexpr (System::kSaddle) {
+    constraints_.multiply(J, v, right_v);
+    if (both) constraints_.multiply(J, a, right_a);
+  } else {
+    std::fill_n(right_v, slots_.total, 0.0);
+    if (both) {
+      std::fill_n(right_a, slots_.total, 0.0);
+      constraints_.template add_products<2>(minus_s_, J, {v, a}, {right_v, right_a});
+    } else {
+      constraints_.template add_products<1>(minus_s_, J, {v}, {right_v});
+    }
+  }
+  write_driven_velocities(1.0);
+}
+
+// Eq. (6) or (13) with the last pass's matrix, for v' - v* and a' - a*.
 template <int D, class System>
 void HybridSimulation<D, System>::project() {
   phases_.enter(Phase::projection);
-  const bool both = settings_.projections == Projections::both;
-  const double minus_s = -dt_ * dt_ / 4 * alpha_;
-  if (both) {
-    mass_.multiply<2>({v_.data(), a_.data()}, {right_v_.data(), right_a_.data()});
-  } else {
-    mass_.multiply<1>({v_.data()}, {right_v_.data()});
-  }
-  if (forces_.in_tangent()) {
-    write_driven_velocities(0.0);
-    forces_.add_product(v_.data(), right_v_.data());
-    if (both) forces_.add_product(a_.data(), right_a_.data());
-    write_driven_velocities(1.0);
-  }
-  const bool rates = constraints_.driven();                          // else Phi_t = 0
-  const auto solve = [&](Array& right, Array& result, bool has_y) {  // y_ is what follows Phi_q^T
+  const bool rates = constraints_.driven();                        // else Phi_t = 0
+  const auto add = [&](Array& right, Array& result, bool has_y) {  // y_ is what follows Phi_q^T
+    Array& difference = System::kSaddle ? Delta_q_ : right;
     if constexpr (System::kSaddle) {
-      static_cast<void>(has_y), static_cast<void>(minus_s);
-      for (long k = 0; k < m_; ++k) y_[k] = -y_[k];
+      static_cast<void>(has_y);
+      for (long k = 0; k < m_; ++k) y_[k] = -(right[k] + y_[k]);
       phases_.enter(Phase::solve);
-      system_.solve(right.data(), y_.data());
+      system_.solve_constraints(difference.data(), y_.data());
     } else {
       if (has_y) {
-        for (long k = 0; k < m_; ++k) y_[k] *= minus_s;
+        for (long k = 0; k < m_; ++k) y_[k] *= minus_s_;
         constraints_.add_forces(Phi_q_.data(), y_.data(), right.data());
       }
       phases_.enter(Phase::solve);
-      system_.solve(right.data());
+      system_.solve(difference.data());
     }
-    std::copy_n(right.data(), n_, result.data());
+    for (long i = 0; i < n_; ++i) result[i] += difference[i];
   };
   if (rates || System::kSaddle) std::fill_n(y_.data(), m_, 0.0);
   if (rates) constraints_.add_rates(Phi_q_.data(), fixed_v_.data(), y_.data());
-  solve(right_v_, v_, rates);
-  if (!both) return;
+  add(right_v_, v_, rates);
+  if (settings_.projections != Projections::both) return;
   phases_.enter(Phase::projection);
   constraints_.second_derivative(v_.data(), y_.data());
   if (rates) constraints_.add_accelerations(Phi_q_.data(), fixed_a_.data(), y_.data());
-  solve(right_a_, a_, true);
+  add(right_a_, a_, true);
 }
 
 template class HybridSimulation<2, PenaltySystem<2, LltSolver>>;

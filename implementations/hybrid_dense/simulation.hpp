@@ -29,12 +29,14 @@ class HybridSimulation final : public Simulation {
   void evaluate_constraints();
   void evaluate_residual();
   [[nodiscard]] bool correct();
+  void multiply_jacobian();
   void project();
   void write_driven_velocities(double factor);
 
   const Model& model_;
   const StepSettings settings_;
   const double dt_ = settings_.step, alpha_ = settings_.penalty;
+  const double minus_s_ = -dt_ * dt_ / 4 * alpha_;
   const long n_ = model_.variables(), m_ = model_.constraints();
   const Slots slots_{model_};
   const bool driven_;
@@ -50,8 +52,9 @@ class HybridSimulation final : public Simulation {
   Array Q_{padded(n_)};                                  // gravity, less what driven mass takes
   Array fixed_v_{slots_.total}, fixed_a_{slots_.total};  // of driven points; zero elsewhere
   Array Delta_q_{slots_.total};                          // -f, then the solution of Eq. (4)
-  Array right_v_{slots_.total},
-      right_a_{slots_.total};  // right-hand sides of Eq. (6), then v' and a'
+  // Right-hand sides of Eq. (6), then v' - v* and a' - a*. Saddle-point form: J v* and J a*.
+  Array right_v_{System::kSaddle ? m_ : slots_.total},
+      right_a_{System::kSaddle ? m_ : slots_.total};
 };
 
 }  // namespace mbs::hybrid_dense

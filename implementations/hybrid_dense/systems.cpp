@@ -22,7 +22,8 @@ namespace {
   }
 }
 
-// y = R x. R: `count` rows, rounded up to whole vectors, each of `columns`, which are whole vectors.
+// y = R x. R: `count` rows, rounded up to whole vectors, each of `columns`, which are whole
+// vectors.
 void multiply(const double* R, long count, long columns, const double* x, double* y) {
   for (long k = 0; k < count; k += kWidth) {
     const double* rows = R + k * columns;
@@ -159,29 +160,40 @@ void SaddleSystem<D, Solver>::solve(double* x, double* y) {
   if (!forces_.in_tangent()) {
     multiply(rows, n_, padded(n_), x, z_.data());
     constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
-    solve_schur(y);
-    for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
-    constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
-    multiply(rows, n_, padded(n_), x, z_.data());
-    std::copy_n(z_.data(), n_, x);
-    return;
+  } else {
+    // Rows are Phi_q L^-T where there are products, so that L is needed once, else Phi_q T_0^-1.
+    if constexpr (Solver::kProducts) T_0_.solve_lower(x);
+    multiply(rows, m_, padded(n_), x, z_y_.data());
+    if constexpr (!Solver::kProducts) T_0_.solve(x);
   }
-  // Rows are Phi_q L^-T where there are products, so that L is needed once, else Phi_q T_0^-1.
-  if constexpr (Solver::kProducts) T_0_.solve_lower(x);
-  multiply(rows, m_, padded(n_), x, z_y_.data());
-  solve_schur(y);
-  if constexpr (!Solver::kProducts) T_0_.solve(x);
-  subtract_rows(rows, m_, padded(n_), z_y_.data(), x);
-  if constexpr (Solver::kProducts) T_0_.solve_upper(x);
+  solve_schur(x, y);
 }
 
-// y is r_2, z_y_ is Phi_q T_0^-1 r_1 when they arrive, then both are mu.
 template <int D, class Solver>
-void SaddleSystem<D, Solver>::solve_schur(double* y) {
+void SaddleSystem<D, Solver>::solve_constraints(double* x, double* y) {
+  std::fill_n(x, padded(n_), 0.0);
+  std::fill_n(z_y_.data(), m_, 0.0);
+  solve_schur(x, y);
+}
+
+// z_y_ is Phi_q T_0^-1 r_1 and y is r_2 when they arrive. x is r_1; with springs L^-1 r_1 or
+// T_0^-1 r_1.
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::solve_schur(double* x, double* y) {
+  const double* rows = inverse_.data();
   for (long k = 0; k < m_; ++k) z_y_[k] -= y[k];
   std::fill(z_y_.data() + m_, z_y_.data() + padded(m_), 0.0);  // as above
   S_.solve(z_y_.data());
   std::copy_n(z_y_.data(), m_, y);
+  if (forces_.in_tangent()) {
+    subtract_rows(rows, m_, padded(n_), z_y_.data(), x);
+    if constexpr (Solver::kProducts) T_0_.solve_upper(x);
+    return;
+  }
+  for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
+  constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
+  multiply(rows, n_, padded(n_), x, z_.data());
+  std::copy_n(z_.data(), n_, x);
 }
 
 template class SaddleSystem<2, LltSolver>;

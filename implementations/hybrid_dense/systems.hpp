@@ -68,12 +68,14 @@ class SaddleSystem {
   [[nodiscard]] bool factorize();
   /// x is r_1, y is r_2 when they arrive, then the solution.
   void solve(double* x, double* y);
+  /// The same with r_1 = 0, whatever x is when it arrives.
+  void solve_constraints(double* x, double* y);
 
  private:
   void invert();
   void solve_rows();
   void multiply_rows();
-  void solve_schur(double* y);
+  void solve_schur(double* x, double* y);
 
   const Constraints<D>& constraints_;
   const Forces<D>& forces_;
