@@ -11,7 +11,7 @@
 namespace mbs::ublas_sparse {
 
 /// Eq. (11) for a fixed time step. Elements keep the gradients of the last evaluation, from which
-/// S = M + (step / 2) C + (step^2 / 4) K of Eqs. (5) and (6) is written.
+/// S = M + (step / 2) C + (step^2 / 4) K of Eq. (5) is written.
 class Forces {
  public:
   Forces(const Model& model, const Points& points, double step);

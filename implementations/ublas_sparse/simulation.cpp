@@ -89,8 +89,7 @@ StepOutcome UblasSimulation<Product>::do_step() {
     phases_.enter(Phase::other);
     noalias(lambda_) += settings_.penalty * Phi_;  // Eq. (1)
   }
-  if (settings_.projections != Projections::none) project_velocity();
-  if (settings_.projections == Projections::both) project_acceleration();
+  if (settings_.projections != Projections::none) project();
   phases_.enter(Phase::other);
   return outcome;
 }

@@ -30,10 +30,10 @@ class UblasSimulation final : public Simulation {
   void assemble_tangent();
   /// Applies the solved correction in rhs_; true if it is within the tolerance.
   [[nodiscard]] bool update();
-  void project_velocity();
-  void project_acceleration();
-  /// Adds -(step^2 / 4) alpha Phi_q^T weight_ to rhs_, Eq. (6).
-  void add_weighted_rows();
+  /// Both projections, or that of v alone; Phi_q comes in as that of the last pass.
+  void project();
+  /// Solves Eq. (6) for the change of x, v or a. `rows`, J^T J x + Phi_q^T weight_ (n), is spent.
+  void correct(Vector& rows, Vector& x);
   /// M + (step / 2) C + (step^2 / 4) K of the last pass; M itself where nothing adds to it.
   [[nodiscard]] const SparseMatrix& S() const { return forces_.has_stiffness() ? S_ : M_; }
 
@@ -51,7 +51,8 @@ class UblasSimulation final : public Simulation {
   Vector Q_;
   Vector q_, v_, a_, lambda_;
   Vector Phi_, weight_;  // m
-  Vector rhs_, next_;    // n
+  Vector rhs_;           // n
+  Vector next_;          // n, the next q; in the projections the right-hand side for a
 };
 
 }  // namespace mbs::ublas_sparse
