@@ -54,7 +54,7 @@ void Assembly::negative_residual(const arma::vec& x, const arma::vec& v, const a
 }
 
 void Assembly::jacobian_product(const arma::vec& x, arma::vec& out) const {
-  transposed_product(constraints_.jacobian(), n_, m_, x.memptr(), out.memptr());
+  constraints_.multiply(x, out);
 }
 
 void Assembly::accelerations(const arma::vec& x, const arma::vec& v, arma::vec& out) const {

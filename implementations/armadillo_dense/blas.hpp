@@ -12,7 +12,6 @@ extern "C" void arma_fortran(dsymv)(const char* uplo, const arma::blas_int* n, c
 
 namespace mbs::armadillo_dense {
 
-inline constexpr double kZero = 0.0;
 inline constexpr double kOne = 1.0;
 inline constexpr arma::blas_int kStride = 1;
 
@@ -29,14 +28,6 @@ inline void add_product(double factor, const double* A, arma::blas_int rows, arm
   if (columns == 0) return;
   const arma::blas_int ld = std::max(rows, 1);
   arma::blas::gemv("N", &rows, &columns, &factor, A, &ld, x, &kStride, &kOne, y, &kStride);
-}
-
-/// y = Aᵀ x, A: rows x columns. Costs nothing without columns.
-inline void transposed_product(const double* A, arma::blas_int rows, arma::blas_int columns,
-                               const double* x, double* y) {
-  if (columns == 0) return;
-  const arma::blas_int ld = std::max(rows, 1);
-  arma::blas::gemv("T", &rows, &columns, &kOne, A, &ld, x, &kStride, &kZero, y, &kStride);
 }
 
 /// Lower triangle of C += factor A Aᵀ, A: rows x columns. Costs nothing without columns.
