@@ -1,4 +1,5 @@
-// What the schemes have in common: M, the residual and products with T0, over Phi_q and the forces.
+// What the schemes have in common: M, the residual and products with Phi_q, over the constraints
+// and forces.
 #include "assembly.hpp"
 
 #include <algorithm>
@@ -52,10 +53,8 @@ void Assembly::negative_residual(const arma::vec& x, const arma::vec& v, const a
   add_product(-h_, constraints_.jacobian(), n_, m_, mu.memptr(), rhs.memptr());
 }
 
-void Assembly::mass_product(const arma::vec& x, arma::vec& rhs) const {
-  rhs.zeros();
-  add_symmetric_product(1.0, M_, x.memptr(), rhs.memptr());
-  if (forces_.stiffen()) forces_.add_product(x, rhs);
+void Assembly::jacobian_product(const arma::vec& x, arma::vec& out) const {
+  constraints_.multiply(x, out);
 }
 
 void Assembly::accelerations(const arma::vec& x, const arma::vec& v, arma::vec& out) const {

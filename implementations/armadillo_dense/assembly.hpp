@@ -1,4 +1,5 @@
-// What the schemes have in common: M, the residual and products with T0, over Phi_q and the forces.
+// What the schemes have in common: M, the residual and products with Phi_q, over the constraints
+// and forces.
 #pragma once
 
 #include <armadillo>
@@ -38,8 +39,8 @@ class Assembly {
   /// the forces, and with them C and K, which what follows uses.
   void negative_residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                          const arma::vec& mu, arma::vec& rhs);
-  /// rhs (n) = T0 x, with the first n entries of x.
-  void mass_product(const arma::vec& x, arma::vec& rhs) const;
+  /// out (m) = Phi_q x, with the first n entries of x.
+  void jacobian_product(const arma::vec& x, arma::vec& out) const;
   /// out = Phi_t, of all m rows, or of the first ones if the others are zero; only if driven.
   void rates(const arma::vec& x, arma::vec& out) const { drivers_.evaluate_rates(x, out); }
   /// out = derivative of (Phi_q v + Phi_t) without its a, likewise, driven or not.

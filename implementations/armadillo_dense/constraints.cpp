@@ -62,7 +62,7 @@ void Constraints::lower_bilinear_constraints(const Model& model) {
   }
 }
 
-Constraints::Dot Constraints::lower(const std::array<int, 4>& points, int row) const {
+Constraints::Dot Constraints::lower(const std::array<int, 4>& points, int row) {
   std::array<int, 4> at;
   for (int i = 0; i < 4; ++i) at[i] = layout_.starts[points[i]];
   Dot dot{.row = row, .a = at[0], .b = at[1], .c = at[2], .d = at[3], .gradients = {}};
@@ -75,8 +75,10 @@ Constraints::Dot Constraints::lower(const std::array<int, 4>& points, int row) c
   return dot;
 }
 
-uword Constraints::gradient_place(int start, int row) const {
-  return layout_.is_free(start) ? uword(layout_.n) * uword(row) + uword(start) : scrap_place();
+uword Constraints::gradient_place(int start, int row) {
+  if (!layout_.is_free(start)) return scrap_place();
+  blocks_.push_back({.row = row, .start = start});
+  return uword(layout_.n) * uword(row) + uword(start);
 }
 
 void Constraints::lower_linear_constraints(const Model& model) {
@@ -85,7 +87,8 @@ void Constraints::lower_linear_constraints(const Model& model) {
     const int first = static_cast<int>(terms_.size());
     for (const LinearConstraint::Term& term : c.terms) {
       terms_.push_back(term);
-      jacobian_[gradient_place(term.coordinate, row)] = term.coefficient;  // Eq. (8), for good
+      jacobian_[uword(layout_.n) * uword(row) + uword(term.coordinate)] =
+          term.coefficient;  // Eq. (8), for good
     }
     linears_.push_back({.row = row, .first = first, .last = static_cast<int>(terms_.size())});
     values_[row++] = c.value;
@@ -146,6 +149,31 @@ void Constraints::evaluate(const arma::vec& x) {
     double sum = 0.0;
     for (int k = c.first; k < c.last; ++k) sum += terms_[k].coefficient * x[terms_[k].coordinate];
     phi_[c.row] = sum - values_[c.row];
+  }
+}
+
+template <int dimension>
+void Constraints::multiply(const double* x, double* out) const {
+  const double* const jacobian = jacobian_.memptr();
+  const uword n = layout_.n;
+  for (const Block& block : blocks_) {
+    const double* const entries = jacobian + n * uword(block.row) + uword(block.start);
+    double sum = 0.0;
+    for (int k = 0; k < dimension; ++k) sum += entries[k] * x[block.start + k];
+    out[block.row] += sum;
+  }
+}
+
+void Constraints::multiply(const arma::vec& x, arma::vec& out) const {
+  out.zeros();
+  if (layout_.dimension == 2) {
+    multiply<2>(x.memptr(), out.memptr());
+  } else {
+    multiply<3>(x.memptr(), out.memptr());
+  }
+  for (const Linear& c : linears_) {
+    for (int k = c.first; k < c.last; ++k)
+      out[c.row] += terms_[k].coefficient * x[terms_[k].coordinate];
   }
 }
 

@@ -29,6 +29,8 @@ class Constraints {
   /// How many rows of Phi vary; they are the first ones.
   [[nodiscard]] int quadratics() const { return quadratics_; }
 
+  /// out (m) = Phi_q x, with the first n entries of x and Phi_q of the last evaluate().
+  void multiply(const arma::vec& x, arma::vec& out) const;
   /// out (its first quadratics() entries) = derivative of Phi_q times v, with extended velocities
   /// v.
   void evaluate_accelerations(const arma::vec& v, arma::vec& out) const;
@@ -57,6 +59,10 @@ class Constraints {
     Dot dot;
     std::array<std::array<double, 3>, 3> B;
   };
+  /// Where a row that varies has its entries at one free point.
+  struct Block {
+    int row, start;
+  };
   struct Linear {
     int row;
     int first, last;  ///< range of terms_
@@ -65,14 +71,16 @@ class Constraints {
   void lower_dot_constraints(const Model& model);
   void lower_bilinear_constraints(const Model& model);
   void lower_linear_constraints(const Model& model);
-  [[nodiscard]] Dot lower(const std::array<int, 4>& points, int row) const;
-  [[nodiscard]] arma::uword gradient_place(int start, int row) const;
+  [[nodiscard]] Dot lower(const std::array<int, 4>& points, int row);
+  [[nodiscard]] arma::uword gradient_place(int start, int row);
   [[nodiscard]] arma::uword scrap_place() const { return arma::uword(layout_.n) * phi_.n_elem; }
 
   template <int dimension>
   void evaluate_dots(const double* x);
   template <int dimension>
   void evaluate_bilinears(const double* x);
+  template <int dimension>
+  void multiply(const double* x, double* out) const;
   template <int dimension>
   void evaluate_accelerations(const double* v, double* out) const;
 
@@ -81,6 +89,7 @@ class Constraints {
   std::vector<Distance> distances_;
   std::vector<Dot> others_;
   std::vector<Bilinear> bilinears_;
+  std::vector<Block> blocks_;
   std::vector<Linear> linears_;
   std::vector<LinearConstraint::Term> terms_;
   arma::vec values_;    ///< m

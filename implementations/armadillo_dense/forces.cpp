@@ -56,14 +56,4 @@ void Forces::add_to(double* T, arma::uword height) const {
   }
 }
 
-void Forces::add_product(const arma::vec& x, arma::vec& y) const {
-  if (layout_.dimension == 2) {
-    springs_.add_product<2>(x.memptr(), y.memptr());
-    torsion_springs_.add_product<2>(x.memptr(), y.memptr());
-  } else {
-    springs_.add_product<3>(x.memptr(), y.memptr());
-    torsion_springs_.add_product<3>(x.memptr(), y.memptr());
-  }
-}
-
 }  // namespace mbs::armadillo_dense

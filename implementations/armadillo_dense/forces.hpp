@@ -13,7 +13,7 @@
 namespace mbs::armadillo_dense {
 
 /// All terms of Eq. (11). C and K are not stored: what elements keep from the last evaluate() is
-/// added to T and multiplied element by element.
+/// added to T element by element.
 class Forces {
  public:
   Forces(const Model& model, const Layout& layout, const StepSettings& settings);
@@ -27,8 +27,6 @@ class Forces {
   /// T (n x n in columns of `height`; its lower triangle counts) += h K + (Δt/2) C of the last
   /// evaluate().
   void add_to(double* T, arma::uword height) const;
-  /// y (n) += (h K + (Δt/2) C) x, with the first n entries of x, of the last evaluate().
-  void add_product(const arma::vec& x, arma::vec& y) const;
 
  private:
   struct CoupleEnd {

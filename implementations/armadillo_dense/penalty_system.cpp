@@ -11,6 +11,8 @@ PenaltySystem::PenaltySystem(const Model& model, const StepSettings& settings)
       solver_(model.variables()),
       mu_(m_, arma::fill::zeros),
       rhs_(n_, arma::fill::zeros),
+      share_of_v_(n_, arma::fill::zeros),
+      share_of_a_(n_, arma::fill::zeros),
       time_terms_(drivers_.drive_linear() ? m_ : constraints_.quadratics(), arma::fill::zeros) {
   if (!model.linear_constraints().empty()) add_linear_constraints(model);
 }
@@ -41,16 +43,29 @@ void PenaltySystem::assemble() {
   if (forces_.stiffen()) forces_.add_to(T.memptr(), T.n_rows);
 }
 
-void PenaltySystem::velocity_projection(const arma::vec& x, const arma::vec& v) {
-  mass_product(v, rhs_);  // Eq. (6)
+void PenaltySystem::begin_velocity_projection(const arma::vec& v) {
+  penalty_product(v, share_of_v_);
+}
+
+void PenaltySystem::begin_acceleration_projection(const arma::vec& a) {
+  penalty_product(a, share_of_a_);
+}
+
+void PenaltySystem::penalty_product(const arma::vec& x, arma::vec& out) {
+  jacobian_product(x, mu_);
+  out.zeros();
+  add_product(-h_ * alpha_, constraints_.jacobian(), n_, m_, mu_.memptr(), out.memptr());
+}
+
+void PenaltySystem::velocity_projection(const arma::vec& x) {
+  rhs_ = share_of_v_;  // Eq. (6)
   if (drivers_.empty()) return;
   rates(x, time_terms_);
   subtract_time_terms();
 }
 
-void PenaltySystem::acceleration_projection(const arma::vec& x, const arma::vec& v,
-                                            const arma::vec& a) {
-  mass_product(a, rhs_);  // Eq. (6)
+void PenaltySystem::acceleration_projection(const arma::vec& x, const arma::vec& v) {
+  rhs_ = share_of_a_;  // Eq. (6)
   accelerations(x, v, time_terms_);
   subtract_time_terms();
 }

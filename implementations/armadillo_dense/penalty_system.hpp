@@ -26,17 +26,23 @@ class PenaltySystem : public Assembly {
   /// False if T is not positive definite or holds a number that is not finite.
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
   void solve() { solver_.solve(rhs_); }
-  /// n: Δq, v' or a'.
+  /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return rhs_; }
   /// lambda (m) after a pass, with Phi of the last evaluate().
   void update(arma::vec& lambda) const { lambda += alpha_ * constraints_.phi(); }  // Eq. (1)
 
-  /// Right-hand sides of Eq. (6), v being v* in the first and v' in the second, a being a*.
-  void velocity_projection(const arma::vec& x, const arma::vec& v);
-  void acceleration_projection(const arma::vec& x, const arma::vec& v, const arma::vec& a);
+  /// Products of v*, a* (n) with J, the Phi_q of the matrix: to be taken before the evaluate() at
+  /// the final q'.
+  void begin_velocity_projection(const arma::vec& v);
+  void begin_acceleration_projection(const arma::vec& a);
+  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*, with v'.
+  void velocity_projection(const arma::vec& x);
+  void acceleration_projection(const arma::vec& x, const arma::vec& v);
 
  private:
   void add_linear_constraints(const Model& model);
+  /// out (n) = -h α Jᵀ J x, with Phi_q of the last evaluate() for J.
+  void penalty_product(const arma::vec& x, arma::vec& out);
   /// rhs_ -= h α Φqᵀ time_terms_.
   void subtract_time_terms();
 
@@ -44,8 +50,10 @@ class PenaltySystem : public Assembly {
   CholeskySolver solver_;
   arma::mat constant_;  ///< n x n, lower triangle of M + h α Φqᵀ Φq of linear constraints; empty
                         ///< without them
-  arma::vec mu_;          ///< m, lambda + alpha Phi
+  arma::vec mu_;          ///< m, lambda + alpha Phi, then J v*, J a*
   arma::vec rhs_;         ///< n, right-hand side, then solution
+  arma::vec share_of_v_;  ///< n, -h α Jᵀ J v*
+  arma::vec share_of_a_;  ///< n, -h α Jᵀ J a*
   arma::vec time_terms_;  ///< of the rows that can be nonzero: Φt, then Φ̇q v' + Φ̇t
 };
 

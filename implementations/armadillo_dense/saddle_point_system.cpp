@@ -13,7 +13,9 @@ SaddlePointSystem::SaddlePointSystem(const Model& model, const StepSettings& set
       solver_(n_ + m_),
       rhs_(n_ + m_, arma::fill::zeros),
       multipliers_(rhs_.memptr(), m_, false, true),
-      coordinates_(rhs_.memptr() + m_, n_, false, true) {}
+      coordinates_(rhs_.memptr() + m_, n_, false, true),
+      Jv_(m_, arma::fill::zeros),
+      Ja_(m_, arma::fill::zeros) {}
 
 void SaddlePointSystem::residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                                  const arma::vec& lambda) {
@@ -37,21 +39,20 @@ void SaddlePointSystem::assemble() {
   if (forces_.stiffen()) forces_.add_to(A.colptr(m) + m, A.n_rows);
 }
 
-void SaddlePointSystem::velocity_projection(const arma::vec& x, const arma::vec& v) {
-  mass_product(v, coordinates_);  // Eq. (13)
+void SaddlePointSystem::velocity_projection(const arma::vec& x) {
+  coordinates_.zeros();  // Eq. (13)
   if (drivers_.empty()) {
-    multipliers_.zeros();
+    multipliers_ = -Jv_;
   } else {
     rates(x, multipliers_);
-    multipliers_ = -multipliers_;
+    multipliers_ = -(multipliers_ + Jv_);
   }
 }
 
-void SaddlePointSystem::acceleration_projection(const arma::vec& x, const arma::vec& v,
-                                                const arma::vec& a) {
-  mass_product(a, coordinates_);  // Eq. (13)
+void SaddlePointSystem::acceleration_projection(const arma::vec& x, const arma::vec& v) {
+  coordinates_.zeros();  // Eq. (13)
   accelerations(x, v, multipliers_);
-  multipliers_ = -multipliers_;
+  multipliers_ = -(multipliers_ + Ja_);
 }
 
 }  // namespace mbs::armadillo_dense

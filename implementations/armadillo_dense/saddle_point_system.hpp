@@ -23,14 +23,18 @@ class SaddlePointSystem : public Assembly {
   /// False if the matrix is singular or holds a number that is not finite.
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
   void solve() { solver_.solve(rhs_); }
-  /// n: Δq, v' or a'.
+  /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return coordinates_; }
   /// lambda (m) after a pass, with the last solution.
   void update(arma::vec& lambda) const { lambda += 1.0 / h_ * multipliers_; }
 
-  /// Right-hand sides of Eq. (13), v being v* in the first and v' in the second, a being a*.
-  void velocity_projection(const arma::vec& x, const arma::vec& v);
-  void acceleration_projection(const arma::vec& x, const arma::vec& v, const arma::vec& a);
+  /// Products of v*, a* (n) with J, the Phi_q of the matrix: to be taken before the evaluate() at
+  /// the final q'.
+  void begin_velocity_projection(const arma::vec& v) { jacobian_product(v, Jv_); }
+  void begin_acceleration_projection(const arma::vec& a) { jacobian_product(a, Ja_); }
+  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*, with v'.
+  void velocity_projection(const arma::vec& x);
+  void acceleration_projection(const arma::vec& x, const arma::vec& v);
 
  private:
   double epsilon_;
@@ -38,6 +42,7 @@ class SaddlePointSystem : public Assembly {
   arma::vec rhs_;          ///< n + m, right-hand side, then solution
   arma::vec multipliers_;  ///< the first m of rhs_, in its memory
   arma::vec coordinates_;  ///< the other n
+  arma::vec Jv_, Ja_;      ///< m, J v* and J a*
 };
 
 }  // namespace mbs::armadillo_dense

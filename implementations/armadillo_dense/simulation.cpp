@@ -58,6 +58,9 @@ StepOutcome DenseSimulation<System>::do_step() {
     system_.solve();  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
+    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
+      begin_projections();
+    }
     phases_.enter(Phase::evaluation);
     system_.evaluate(q_);
     phases_.enter(Phase::other);
@@ -106,23 +109,31 @@ bool DenseSimulation<System>::correct() {
 }
 
 template <class System>
+void DenseSimulation<System>::begin_projections() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  system_.begin_velocity_projection(v_);
+  if (settings_.projections == Projections::both) system_.begin_acceleration_projection(a_);
+}
+
+template <class System>
 void DenseSimulation<System>::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  system_.velocity_projection(q_, v_);
+  system_.velocity_projection(q_);
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::projection);
-  std::copy_n(system_.solution().begin(), n_, v_.begin());
+  for (arma::uword i = 0; i < n_; ++i) v_[i] += system_.solution()[i];
   if (settings_.projections == Projections::velocity) {
     phases_.enter(Phase::other);
     return;
   }
-  system_.acceleration_projection(q_, v_, a_);
+  system_.acceleration_projection(q_, v_);
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::other);
-  a_ = system_.solution();
+  a_ += system_.solution();
 }
 
 template class DenseSimulation<PenaltySystem>;

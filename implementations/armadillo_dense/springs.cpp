@@ -72,28 +72,9 @@ void Springs::add_to(double* T, arma::uword height) const {
   }
 }
 
-template <int dimension>
-void Springs::add_product(const double* x, double* y) const {
-  for (const Element& spring : springs_) {  // Eqs. (6), (11)
-    Direction<dimension> d{};
-    double along = 0.0;
-    for (int k = 0; k < dimension; ++k) {
-      for (int i = 0; i < spring.count; ++i) d[k] += spring.sign[i] * x[spring.ends[i] + k];
-      along += spring.axial * spring.e[k] * d[k];
-    }
-    for (int i = 0; i < spring.count; ++i) {
-      for (int k = 0; k < dimension; ++k) {
-        y[spring.ends[i] + k] += spring.sign[i] * (along * spring.e[k] + spring.transverse * d[k]);
-      }
-    }
-  }
-}
-
 template void Springs::evaluate<2>(const double*, const double*, double*);
 template void Springs::evaluate<3>(const double*, const double*, double*);
 template void Springs::add_to<2>(double*, arma::uword) const;
 template void Springs::add_to<3>(double*, arma::uword) const;
-template void Springs::add_product<2>(const double*, double*) const;
-template void Springs::add_product<3>(const double*, double*) const;
 
 }  // namespace mbs::armadillo_dense

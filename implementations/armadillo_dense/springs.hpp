@@ -26,9 +26,6 @@ class Springs {
   /// evaluate().
   template <int dimension>
   void add_to(double* T, arma::uword height) const;
-  /// y (n) += (h K + (Δt/2) C) x (n), of the last evaluate().
-  template <int dimension>
-  void add_product(const double* x, double* y) const;
 
  private:
   struct Element {

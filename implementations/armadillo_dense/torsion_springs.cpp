@@ -89,27 +89,9 @@ void TorsionSprings::add_to(double* T, arma::uword height) const {
   }
 }
 
-template <int dimension>
-void TorsionSprings::add_product(const double* x, double* y) const {
-  for (const Element& spring : springs_) {  // Eqs. (6), (11)
-    double along = 0.0;
-    for (int i = 0; i < spring.count; ++i) {
-      const End& end = spring.ends[i];
-      for (int k = 0; k < dimension; ++k) along += end.g[k] * x[end.start + k];
-    }
-    along *= spring.weight;
-    for (int i = 0; i < spring.count; ++i) {
-      const End& end = spring.ends[i];
-      for (int k = 0; k < dimension; ++k) y[end.start + k] += along * end.g[k];
-    }
-  }
-}
-
 template void TorsionSprings::evaluate<2>(const double*, const double*, double*);
 template void TorsionSprings::evaluate<3>(const double*, const double*, double*);
 template void TorsionSprings::add_to<2>(double*, arma::uword) const;
 template void TorsionSprings::add_to<3>(double*, arma::uword) const;
-template void TorsionSprings::add_product<2>(const double*, double*) const;
-template void TorsionSprings::add_product<3>(const double*, double*) const;
 
 }  // namespace mbs::armadillo_dense

@@ -26,9 +26,6 @@ class TorsionSprings {
   /// evaluate().
   template <int dimension>
   void add_to(double* T, arma::uword height) const;
-  /// y (n) += (h K + (Δt/2) C) x (n), of the last evaluate().
-  template <int dimension>
-  void add_product(const double* x, double* y) const;
 
  private:
   /// A free point and its entries of g: w_cd (z x w)/(w.w) + w_ab (-(z x u)/(u.u)).
