@@ -81,12 +81,6 @@ void Assembly<Scalar>::leading(Eigen::MatrixX<MatrixScalar>& T) const {
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::leading_product(const Vector& x, Vector& y) const {
-  y.noalias() = M_ * x.head(variables_);
-  if (!forces_.empty()) forces_.add_product(x, y);
-}
-
-template <typename Scalar>
 void Assembly<Scalar>::kept_leading_product(const Vector& x, Vector& y) const {
   y.noalias() = M_ * x;
   forces_.add_kept_product(x, y);
@@ -130,17 +124,14 @@ void Assembly<Scalar>::subtract_penalty(const Vector& term, Vector& rhs) const {
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::project_velocity(const Vector& q, const Vector& v, Vector& rhs) {
-  leading_product(v, rhs);  // Eq. (6)
-  if (!drivers_.empty()) subtract_penalty(velocity_term(q), rhs);
+void Assembly<Scalar>::finish_velocity(const Vector& q, Vector& rhs) {
+  if (!drivers_.empty()) subtract_penalty(velocity_term(q), rhs);  // Eq. (6)
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::project_acceleration(const Vector& q, const Vector& v, const Vector& a,
-                                            Vector& rhs) {
-  leading_product(a, rhs);  // Eq. (6)
+void Assembly<Scalar>::finish_acceleration(const Vector& q, const Vector& v, Vector& rhs) {
   if (constraints_.quadratic() == 0 && drivers_.empty()) return;
-  subtract_penalty(acceleration_term(q, v), rhs);
+  subtract_penalty(acceleration_term(q, v), rhs);  // Eq. (6)
 }
 
 template class Assembly<double>;

@@ -64,12 +64,13 @@ class Assembly {
   /// T₀ of Eq. (12) into the lower triangle of T (n×n, kg); the other half is scratch.
   template <typename MatrixScalar>
   void leading(Eigen::MatrixX<MatrixScalar>& T) const;
-  /// T₀ x into y (n), of x the first n elements.
-  void leading_product(const Vector& x, Vector& y) const;
   /// Keeps C and K for kept_leading_product().
   void keep_leading() { forces_.keep(); }
   /// T₀ x into y (n), with the C and K of the last keep_leading() and x of n elements.
   void kept_leading_product(const Vector& x, Vector& y) const;
+
+  /// J x into y (m), J being Phi_q and x having n elements or more.
+  void jacobian_product(const Vector& x, Vector& y) const { constraints_.product(x, y); }
 
   /// Φt (m) at q, in a buffer that the next call of any of these four overwrites.
   const Vector& velocity_term(const Vector& q);
@@ -83,10 +84,14 @@ class Assembly {
   /// rhs (n) −= (Δt²/4) α Φqᵀ term, with term (m) of Eqs. (6) and (15).
   void subtract_penalty(const Vector& term, Vector& rhs) const;
 
-  /// The right-hand side of Eq. (6) for v' into rhs (n), with v* in v.
-  void project_velocity(const Vector& q, const Vector& v, Vector& rhs);
-  /// The right-hand side of Eq. (6) for a' into rhs (n), with the projected v' and a* in a (n).
-  void project_acceleration(const Vector& q, const Vector& v, const Vector& a, Vector& rhs);
+  /// −(Δt²/4) α Jᵀ J x into rhs (n), with v* or a* for x: Eq. (6) for what it changes. To be called
+  /// as long as J is that of the last tangent(), which is before the evaluate() at the final q'.
+  void start_projection(const Vector& x, Vector& rhs) const {
+    constraints_.normal_product(-scale_ * penalty_, x, rhs);
+  }
+  /// Makes it the right-hand side for v' − v*, then that for a' − a* with the projected v'.
+  void finish_velocity(const Vector& q, Vector& rhs);
+  void finish_acceleration(const Vector& q, const Vector& v, Vector& rhs);
 
  private:
   using Index = Eigen::Index;

@@ -18,6 +18,7 @@ Constraints<Scalar>::Constraints(const Model& model, const Layout& layout)
     lower_bilinear(constraint, row++, layout);
   }
   for (const auto& constraint : model.linear_constraints()) lower_linear(constraint, row++);
+  list_coordinates(model, layout);
   clear_driven_values(model);
 }
 
@@ -69,6 +70,23 @@ void Constraints<Scalar>::lower_linear(const LinearConstraint& constraint, Index
     jacobian_[row * variables_ + coordinate] = Scalar(coefficient);  // Eq. (8), once and for all
   }
   linears_.push_back({begin, static_cast<Index>(terms_.size()), row, Scalar(constraint.value)});
+}
+
+template <typename Scalar>
+void Constraints<Scalar>::list_coordinates(const Model& model, const Layout& layout) {
+  const auto end = [this] { ends_.push_back(static_cast<Index>(coordinates_.size())); };
+  const auto list_points = [&](const auto& one) {
+    for (const Share& share : layout.shares({one.a, one.b, one.c, one.d})) {
+      for (int axis = 0; axis < dimension_; ++axis) coordinates_.push_back(share.start + axis);
+    }
+    end();
+  };
+  for (const auto& constraint : model.dot_constraints()) list_points(constraint);
+  for (const auto& constraint : model.bilinear_constraints()) list_points(constraint);
+  for (const auto& constraint : model.linear_constraints()) {
+    for (const auto& [coordinate, _] : constraint.terms) coordinates_.push_back(coordinate);
+    end();
+  }
 }
 
 template <typename Scalar>
@@ -148,6 +166,32 @@ template <typename Scalar>
 void Constraints<Scalar>::velocity_term(const Vector& v, Vector& term) const {
   dimension_ == 2 ? evaluate_velocity_term<2>(v.data(), term.data())
                   : evaluate_velocity_term<3>(v.data(), term.data());
+}
+
+template <typename Scalar>
+void Constraints<Scalar>::product(const Vector& x, Vector& y) const {
+  const Scalar* column = jacobian_.data();
+  Index k = 0;
+  for (std::size_t row = 0; row < ends_.size(); ++row, column += variables_) {
+    Scalar sum = 0;
+    for (; k < ends_[row]; ++k) sum += column[coordinates_[k]] * x[coordinates_[k]];
+    y[row] = sum;
+  }
+}
+
+template <typename Scalar>
+void Constraints<Scalar>::normal_product(Scalar factor, const Vector& x, Vector& y) const {
+  y.setZero();
+  const Scalar* column = jacobian_.data();
+  Index begin = 0;
+  for (const Index end : ends_) {
+    Scalar sum = 0;
+    for (Index k = begin; k < end; ++k) sum += column[coordinates_[k]] * x[coordinates_[k]];
+    sum *= factor;
+    for (Index k = begin; k < end; ++k) y[coordinates_[k]] += sum * column[coordinates_[k]];
+    begin = end;
+    column += variables_;
+  }
 }
 
 template <typename Scalar>

@@ -27,6 +27,11 @@ class Constraints {
   /// 2 u̇·B ẇ of Eq. (7) into `term` (m, m²/s²), with v extended; not the rows of linear ones.
   void velocity_term(const Vector& v, Vector& term) const;
 
+  /// J x into y (m), J being Phi_q of the last evaluate() and x having n elements or more.
+  void product(const Vector& x, Vector& y) const;
+  /// factor Jᵀ J x into y (n), likewise.
+  void normal_product(Scalar factor, const Vector& x, Vector& y) const;
+
   /// Adds factor × the share of the linear constraints in Φqᵀ Φq to both triangles of T (n×n).
   void add_linear_share(Scalar factor, Matrix& T) const;
 
@@ -84,6 +89,8 @@ class Constraints {
   void lower_linear(const LinearConstraint& constraint, Index row);
   template <typename Constraint>
   Dot slotted(const Constraint& constraint, Index row, const Layout& layout) const;
+  /// Of all constraints, in the order of the rows.
+  void list_coordinates(const Model& model, const Layout& layout);
   void clear_driven_values(const Model& model);
   template <int dimension>
   void evaluate_quadratic(const Scalar* q);
@@ -98,6 +105,8 @@ class Constraints {
   std::vector<Bilinear> bilinears_;
   std::vector<Linear> linears_;
   std::vector<Term> terms_;
+  std::vector<Index> coordinates_;  ///< those that a constraint has, one constraint after the other
+  std::vector<Index> ends_;         ///< of each constraint in coordinates_
   Vector Phi_;
   Vector jacobian_;  ///< n×m column-major, then the scratch place
 };

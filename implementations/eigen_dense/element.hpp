@@ -8,7 +8,7 @@
 
 namespace mbs::eigen_dense {
 
-/// One element's part of W = (Δt/2) C + (Δt²/4) K in Eqs. (5) and (6), kept as
+/// One element's part of W = (Δt/2) C + (Δt²/4) K in Eqs. (5) and (15), kept as
 ///
 ///     W = along g gᵀ + across H,    along = (Δt/2) c + (Δt²/4) (k − p),    across = (Δt²/4) p
 ///

@@ -167,9 +167,8 @@ void Forces<Scalar>::add_tangent(Eigen::MatrixX<MatrixScalar>& T) const {
 }
 
 template <typename Scalar>
-void Forces<Scalar>::add_product(const std::vector<Element<Scalar>>& elements, const Vector& x,
-                                 Vector& y) const {
-  for (const Element<Scalar>& element : elements) {  // Eq. (6)
+void Forces<Scalar>::add_kept_product(const Vector& x, Vector& y) const {
+  for (const Element<Scalar>& element : kept_) {  // Eq. (15)
     dimension_ == 2 ? element.template add_product<2>(x.data(), y.data())
                     : element.template add_product<3>(x.data(), y.data());
   }

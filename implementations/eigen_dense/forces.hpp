@@ -36,13 +36,10 @@ class Forces {
   template <typename MatrixScalar>
   void add_tangent(Eigen::MatrixX<MatrixScalar>& T) const;
 
-  /// y (n) += the last W times x, of which the first n elements are read.
-  void add_product(const Vector& x, Vector& y) const { add_product(elements_, x, y); }
-
   /// Keeps the last W for add_kept_product() apart from what evaluate() overwrites.
   void keep() { kept_ = elements_; }
   /// y (n) += the kept W times x (n).
-  void add_kept_product(const Vector& x, Vector& y) const { add_product(kept_, x, y); }
+  void add_kept_product(const Vector& x, Vector& y) const;
 
  private:
   using Index = Eigen::Index;
@@ -92,7 +89,6 @@ class Forces {
     Scalar torque;
   };
 
-  void add_product(const std::vector<Element<Scalar>>& elements, const Vector& x, Vector& y) const;
   void lower_elements(const Model& model, const Layout& layout);
   void lower_couples(const Model& model, const Layout& layout);
   /// (Δt/2) c + (Δt²/4) k.

@@ -33,7 +33,7 @@ class GeometricStiffness {
   /// Adds it to the lower triangle of T (n×n); the other half is scratch.
   template <typename MatrixScalar>
   void add_tangent(Eigen::MatrixX<MatrixScalar>& T) const;
-  /// y (n) += its product with x, of which the first n elements are read.
+  /// y (n) += its product with x (n).
   void add_product(const Vector& x, Vector& y) const;
 
  private:

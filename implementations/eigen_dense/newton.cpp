@@ -15,8 +15,8 @@ namespace mbs::eigen_dense {
 namespace {
 
 /// How often Eq. (15) is solved at most; 0: Eq. (6) or (13) is instead. In single precision the
-/// penalty form with new factors solves it once: that is Eq. (6) up to what the last Δq changes in
-/// Φq, but T, whose condition leaves few digits, then acts on the correction of v* and a* alone.
+/// penalty form with new factors solves it once: with the one pass a step that float's tolerance
+/// asks for, Eq. (6) would drift.
 int refinements(const StepSettings& settings) {
   if (settings.tangent != TangentReuse::none || settings.precision == Precision::mixed) return 5;
   const bool penalty = settings.scheme == Scheme::penalty;
@@ -52,6 +52,8 @@ StepOutcome Newton<System>::do_step() {
   phases_.enter(Phase::evaluation);
   system_.assembly().evaluate(motion_.q);
   schedule_.begin_step();
+  unprojected_ = (unprojected_ + 1) % settings_.projections_every;
+  projected_ = unprojected_ == 0 && settings_.projections != Projections::none;
   StepOutcome outcome{StepStatus::pass_limit, 0, 0};
   if (!iterate(outcome) || !project(outcome)) outcome.status = StepStatus::factorization_failed;
   schedule_.end_step(outcome.status);
@@ -67,8 +69,16 @@ bool Newton<System>::iterate(StepOutcome& outcome) {
     ++outcome.passes;
     bool small = false;
     if (!pass(outcome, small)) return false;
+    const bool converged = small && (every_pass || was_small);
+    if (projected_ && refinements_ == 0 && (converged || outcome.passes == settings_.max_passes)) {
+      phases_.enter(Phase::projection);
+      system_.start_projections(motion_);
+    }
+    phases_.enter(Phase::evaluation);
+    system_.assembly().evaluate(motion_.q);
+    phases_.enter(Phase::other);
     if (every_pass || small) system_.update_multipliers(motion_.lambda);
-    if (small && (every_pass || was_small)) {
+    if (converged) {
       outcome.status = StepStatus::converged;
       return true;
     }
@@ -88,9 +98,6 @@ bool Newton<System>::pass(StepOutcome& outcome, bool& small) {
   const auto& delta = system_.correction();
   small = motion_.correct(delta.data(), Scalar(settings_.step), Scalar(settings_.tolerance));
   schedule_.after_pass(largest(delta), small);
-  phases_.enter(Phase::evaluation);
-  system_.assembly().evaluate(motion_.q);
-  phases_.enter(Phase::other);
   return true;
 }
 
@@ -108,9 +115,7 @@ bool Newton<System>::factorize(StepOutcome& outcome) {
 
 template <typename System>
 bool Newton<System>::project(StepOutcome& outcome) {
-  if (++unprojected_ < settings_.projections_every) return true;
-  unprojected_ = 0;
-  if (settings_.projections == Projections::none) return true;
+  if (!projected_) return true;
   const bool both = settings_.projections == Projections::both;
   if (refinements_ > 0) {
     const double bound = 2 / settings_.step * settings_.tolerance;
@@ -119,10 +124,10 @@ bool Newton<System>::project(StepOutcome& outcome) {
             refine(&System::refine_acceleration, motion_.a, 2 / settings_.step * bound, outcome));
   }
   solve(&System::project_velocity);  // Eq. (6) or (13)
-  motion_.v.head(motion_.a.size()) = system_.correction();
+  motion_.v.head(motion_.a.size()) += system_.correction();
   if (!both) return true;
   solve(&System::project_acceleration);  // Eq. (6) or (13)
-  motion_.a = system_.correction();
+  motion_.a += system_.correction();
   return true;
 }
 

@@ -33,7 +33,7 @@ class Newton final : public mbs::Simulation {
   [[nodiscard]] bool factorize_here(StepOutcome& outcome);
   /// The passes of a step; sets the outcome's status and counts.
   [[nodiscard]] bool iterate(StepOutcome& outcome);
-  /// One pass without the multiplier update. Leaves the phase at `other`; `small` says whether
+  /// One pass up to the correction of the motion. Leaves the phase at `other`; `small` says whether
   /// max|Δq| is within the tolerance.
   [[nodiscard]] bool pass(StepOutcome& outcome, bool& small);
   [[nodiscard]] bool project(StepOutcome& outcome);
@@ -50,8 +50,9 @@ class Newton final : public mbs::Simulation {
   System system_;
   Motion<Scalar> motion_;
   TangentSchedule schedule_;
-  Vector start_, change_;  ///< n; v* or a* of a refinement, v* − v' or a* − a'
-  int unprojected_ = 0;    ///< steps since the last projected one
+  Vector start_, change_;   ///< n; v* or a* of a refinement, v* − v' or a* − a'
+  int unprojected_ = 0;     ///< steps since the last one that was due to be projected
+  bool projected_ = false;  ///< whether this step is
 };
 
 }  // namespace mbs::eigen_dense

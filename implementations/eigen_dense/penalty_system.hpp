@@ -47,14 +47,17 @@ class PenaltySystem {
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
 
-  /// The right-hand sides of Eq. (6) for v', then for a' with that v'.
-  void project_velocity(const Motion<Scalar>& motion) {
-    assembly_.project_velocity(motion.q, motion.v, x_);
-    stiffness_.add_product(motion.v, x_);
+  /// To be called before the evaluation at the final q', with v* and a*: the Jacobian is still that
+  /// of the last pass.
+  void start_projections(const Motion<Scalar>& motion) {
+    assembly_.start_projection(motion.v, x_);
+    assembly_.start_projection(motion.a, lag_);
   }
+  /// The right-hand sides of Eq. (6) for v' − v*, then for a' − a* with that v'.
+  void project_velocity(const Motion<Scalar>& motion) { assembly_.finish_velocity(motion.q, x_); }
   void project_acceleration(const Motion<Scalar>& motion) {
-    assembly_.project_acceleration(motion.q, motion.v, motion.a, x_);
-    stiffness_.add_product(motion.a, x_);
+    x_ = lag_;
+    assembly_.finish_acceleration(motion.q, motion.v, x_);
   }
 
   /// Those of Eq. (15).
@@ -87,7 +90,7 @@ class PenaltySystem {
   Stiffness stiffness_;
   LinearSolver solver_;
   Eigen::MatrixXf jacobian_;  ///< Φqᵀ in float, if only the matrix is; else 0×0
-  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'
+  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'; in Eq. (6) the part of a*
   Vector x_;                  ///< n; right-hand side, then solution
 };
 

@@ -25,6 +25,8 @@ class SaddleSystem {
         solver_(model.variables(), model.constraints(), MatrixScalar(epsilon_)),
         upper_(Vector::Zero(model.variables())),
         nu_(Vector::Zero(model.constraints())),
+        velocity_rate_(nu_),
+        acceleration_rate_(nu_),
         x_(Vector::Zero(model.variables() + model.constraints())) {
     if (!constant_leading()) return;
     assembly_.leading(solver_.leading());
@@ -53,16 +55,21 @@ class SaddleSystem {
     return solver_.factorize();
   }
 
-  /// The right-hand sides of Eq. (13) for v', then for a' with that v'.
+  /// To be called before the evaluation at the final q', with v* and a*: the Jacobian is still that
+  /// of the last pass.
+  void start_projections(const Motion<Scalar>& motion) {
+    assembly_.jacobian_product(motion.v, velocity_rate_);
+    assembly_.jacobian_product(motion.a, acceleration_rate_);
+    upper_.setZero();
+  }
+  /// The right-hand sides of Eq. (13) for v' − v*, then for a' − a* with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
-    assembly_.leading_product(motion.v, upper_);
-    stiffness_.add_product(motion.v, upper_);
-    fill(assembly_.velocity_term(motion.q));
+    velocity_rate_ += assembly_.velocity_term(motion.q);
+    fill(velocity_rate_);
   }
   void project_acceleration(const Motion<Scalar>& motion) {
-    assembly_.leading_product(motion.a, upper_);
-    stiffness_.add_product(motion.a, upper_);
-    fill(assembly_.acceleration_term(motion.q, motion.v));
+    acceleration_rate_ += assembly_.acceleration_term(motion.q, motion.v);
+    fill(acceleration_rate_);
   }
 
   /// Those of Eq. (15).
@@ -115,9 +122,10 @@ class SaddleSystem {
   Assembly<Scalar> assembly_;
   Stiffness stiffness_;
   LinearSolver solver_;
-  Vector upper_;  ///< n; the upper part of a right-hand side
-  Vector nu_;     ///< m; ν of a projection
-  Vector x_;      ///< n + m; right-hand side, then solution
+  Vector upper_;                              ///< n; the upper part of a right-hand side
+  Vector nu_;                                 ///< m; ν of a refined projection
+  Vector velocity_rate_, acceleration_rate_;  ///< m; J v* and J a*, then with the other terms
+  Vector x_;                                  ///< n + m; right-hand side, then solution
 };
 
 /// With the exact tangent.

@@ -10,7 +10,8 @@ Simulation::Simulation(const Model& model, const StepSettings& settings)
       assembly_(model, settings, layout_),
       solver_(model.variables()),
       motion_(model, layout_),
-      solution_(Eigen::VectorXd::Zero(model.variables())) {}
+      solution_(Eigen::VectorXd::Zero(model.variables())),
+      acceleration_change_(solution_) {}
 
 StepOutcome Simulation::do_step() {
   phases_.enter(Phase::other);
@@ -19,19 +20,15 @@ StepOutcome Simulation::do_step() {
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(motion_.q);
   StepOutcome outcome{StepStatus::pass_limit, 0};
-  for (bool converged = false; !converged && outcome.passes < settings_.max_passes;) {
-    ++outcome.passes;
-    if (!pass(converged)) {
-      outcome.status = StepStatus::factorization_failed;
-      return outcome;
-    }
-    if (converged) outcome.status = StepStatus::converged;
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    pass(outcome);
   }
-  project();
+  if (outcome.status != StepStatus::factorization_failed) project();
   return outcome;
 }
 
-bool Simulation::pass(bool& converged) {
+void Simulation::pass(StepOutcome& outcome) {
+  ++outcome.passes;
   phases_.enter(Phase::evaluation);
   assembly_.residual(motion_.q, motion_.v, motion_.a, motion_.lambda, solution_);
   phases_.enter(Phase::assembly);
@@ -41,29 +38,41 @@ bool Simulation::pass(bool& converged) {
   phases_.enter(Phase::solve);
   if (factorized) solver_.solve(solution_);  // Eq. (4)
   phases_.enter(Phase::other);
-  if (!factorized) return false;
-
-  converged = motion_.correct(solution_.data(), settings_.step, settings_.tolerance);
+  if (!factorized) {
+    outcome.status = StepStatus::factorization_failed;
+    return;
+  }
+  const bool converged = motion_.correct(solution_.data(), settings_.step, settings_.tolerance);
+  if (converged) outcome.status = StepStatus::converged;
+  if (converged || outcome.passes == settings_.max_passes) start_projections();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(motion_.q);
   phases_.enter(Phase::other);
   motion_.lambda += settings_.penalty * assembly_.Phi();  // Eq. (1)
-  return true;
+}
+
+void Simulation::start_projections() {
+  if (settings_.projections == Projections::none) return;
+  phases_.enter(Phase::projection);
+  assembly_.start_projection(motion_.v, solution_);
+  if (settings_.projections == Projections::both) {
+    assembly_.start_projection(motion_.a, acceleration_change_);
+  }
 }
 
 void Simulation::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(motion_.q, motion_.v, solution_);
+  assembly_.finish_velocity(motion_.q, solution_);
   phases_.enter(Phase::solve);
   solver_.solve(solution_);  // Eq. (6)
-  motion_.v.head(motion_.a.size()) = solution_;
+  motion_.v.head(motion_.a.size()) += solution_;
   if (settings_.projections == Projections::both) {
     phases_.enter(Phase::projection);
-    assembly_.project_acceleration(motion_.q, motion_.v, motion_.a, solution_);
+    assembly_.finish_acceleration(motion_.q, motion_.v, acceleration_change_);
     phases_.enter(Phase::solve);
-    solver_.solve(solution_);  // Eq. (6)
-    motion_.a.swap(solution_);
+    solver_.solve(acceleration_change_);  // Eq. (6)
+    motion_.a += acceleration_change_;
   }
   phases_.enter(Phase::other);
 }

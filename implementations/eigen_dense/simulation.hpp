@@ -22,9 +22,11 @@ class Simulation final : public mbs::Simulation {
   StepOutcome do_step() override;
   void do_get_state(State& state) const override { motion_.get(state); }
 
-  /// One Newton pass, with the multiplier update. Leaves the phase at `other`. False if the
-  /// factorization failed; `converged` says whether max|Δq| is within the tolerance.
-  [[nodiscard]] bool pass(bool& converged);
+  /// One Newton pass, with the multiplier update, counted. Leaves the phase at `other`. The status
+  /// becomes `converged` if max|Δq| is within the tolerance.
+  void pass(StepOutcome& outcome);
+  /// What the projections need of the last pass's Jacobian.
+  void start_projections();
   void project();
 
   StepSettings settings_;
@@ -32,7 +34,8 @@ class Simulation final : public mbs::Simulation {
   Assembly<double> assembly_;
   Solver<double> solver_;
   Motion<double> motion_;
-  Eigen::VectorXd solution_;  ///< n; right-hand side, then solution of a linear system
+  Eigen::VectorXd solution_;             ///< n; right-hand side, then solution of a linear system
+  Eigen::VectorXd acceleration_change_;  ///< n; the same for a' − a*
 };
 
 }  // namespace mbs::eigen_dense
