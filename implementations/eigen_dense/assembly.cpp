@@ -60,7 +60,7 @@ template <typename Scalar>
 void Assembly<Scalar>::tangent(Matrix& T) const {
   T = M_and_linear_.size() == 0 ? M_ : M_and_linear_;
   const auto Jt = constraints_.jacobian_transposed();
-  rank_update(Jt.leftCols(constraints_.quadratic()), scale_ * penalty_, T);  // Eq. (5)
+  rank_update<Scalar>(Jt.leftCols(constraints_.quadratic()), scale_ * penalty_, T);  // Eq. (5)
   if (!forces_.empty()) forces_.add_tangent(T);
 }
 
@@ -69,7 +69,7 @@ void Assembly<Scalar>::tangent(Eigen::MatrixXf& T, Eigen::MatrixXf& jacobian) co
   T = (M_and_linear_.size() == 0 ? M_ : M_and_linear_).template cast<float>();
   const auto Jt = constraints_.jacobian_transposed();
   jacobian = Jt.leftCols(constraints_.quadratic()).template cast<float>();
-  rank_update(jacobian, float(scale_ * penalty_), T);  // Eq. (5)
+  rank_update<float>(jacobian, float(scale_ * penalty_), T);  // Eq. (5)
   if (!forces_.empty()) forces_.add_tangent(T);
 }
 

@@ -15,20 +15,13 @@ Eigen::Index slice_width(Eigen::Index size) {
 }
 
 /// A (n×n) += factor U Uᵀ in its lower triangle, U (n×depth); the other half is scratch.
-template <typename Scalar, typename Derived>
-void rank_update(const Eigen::MatrixBase<Derived>& U, Scalar factor, Eigen::MatrixX<Scalar>& A) {
-  /// Up to here Eigen's general product, which does both triangles, beats its rank-k update.
-  constexpr Eigen::Index kGeneralProductLimit = 28;
-  const Eigen::Index depth = U.cols();
-  if (A.rows() <= kGeneralProductLimit && depth > 0) {
-    A.noalias() += factor * U * U.transpose();
-    return;
-  }
-  const Eigen::Index width = slice_width<Scalar>(A.rows());
-  for (Eigen::Index k = 0; k < depth; k += width) {
-    const auto slice = U.middleCols(k, std::min(width, depth - k));
-    A.template selfadjointView<Eigen::Lower>().rankUpdate(slice, factor);
-  }
-}
+template <typename Scalar>
+void rank_update(const Eigen::Ref<const Eigen::MatrixX<Scalar>>& U, Scalar factor,
+                 Eigen::MatrixX<Scalar>& A);
+
+/// The same with factor Uᵀ U, U (depth×n).
+template <typename Scalar>
+void transposed_rank_update(const Eigen::MatrixX<Scalar>& U, Scalar factor,
+                            Eigen::MatrixX<Scalar>& A);
 
 }  // namespace mbs::eigen_dense

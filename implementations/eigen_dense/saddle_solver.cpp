@@ -19,7 +19,7 @@ void SaddleSolver<Scalar>::form_schur() {
   Matrix& S = schur_.matrix();
   S.setZero();
   S.diagonal().setConstant(epsilon_);
-  rank_update(coupling_.transpose(), Scalar(1), S);
+  transposed_rank_update(coupling_, Scalar(1), S);
 }
 
 template <typename Scalar>
