@@ -9,7 +9,7 @@
 namespace mbs::csc_klu {
 namespace {
 
-void add_scaled(double factor, const Pair& x, Pair& y) {
+void add_scaled(double factor, const Both& x, Both& y) {
   for (int i = 0; i < 2; ++i) y[i] += factor * x[i];
 }
 
@@ -60,16 +60,16 @@ void Jacobian<dim>::evaluate(const double* q, double* phi) {
 }
 
 template <int dim>
-void Jacobian<dim>::multiply(const double* v, const double* a, Pair* z) const {
-  std::fill_n(z, pattern_.quadratics(), Pair{});
+void Jacobian<dim>::multiply(const double* v, const double* a, Both* z) const {
+  std::fill_n(z, pattern_.quadratics(), Both{});
   const int* const row = pattern_.block_row.data();
   const double* value = values_.data();
   int block = 0;
   for (int p = 0; p < pattern_.points(); ++p) {
-    std::array<Pair, dim> x;
+    std::array<Both, dim> x;
     for (int k = 0; k < dim; ++k) x[k] = {v[dim * p + k], a[dim * p + k]};
     for (const int end = pattern_.block_begin[p + 1]; block < end; ++block, value += dim) {
-      Pair sum = z[row[block]];
+      Both sum = z[row[block]];
       for (int k = 0; k < dim; ++k) add_scaled(value[k], x[k], sum);
       z[row[block]] = sum;
     }
@@ -77,7 +77,7 @@ void Jacobian<dim>::multiply(const double* v, const double* a, Pair* z) const {
   z += pattern_.quadratics();
   int k = 0;
   for (const auto& linear : pattern_.linears) {
-    Pair sum{};
+    Both sum{};
     for (; k < linear.terms_end; ++k) {
       const auto& [coordinate, coefficient] = pattern_.linear_terms[k];
       add_scaled(coefficient, {v[coordinate], a[coordinate]}, sum);
@@ -87,13 +87,13 @@ void Jacobian<dim>::multiply(const double* v, const double* a, Pair* z) const {
 }
 
 template <int dim>
-void Jacobian<dim>::multiply_transposed(const Pair* z, double factor, double* y_v,
+void Jacobian<dim>::multiply_transposed(const Both* z, double factor, double* y_v,
                                         double* y_a) const {
   const int* const row = pattern_.block_row.data();
   const double* value = values_.data();
   int block = 0;
   for (int p = 0; p < pattern_.points(); ++p) {
-    std::array<Pair, dim> sum{};
+    std::array<Both, dim> sum{};
     for (const int end = pattern_.block_begin[p + 1]; block < end; ++block, value += dim) {
       for (int k = 0; k < dim; ++k) add_scaled(value[k], z[row[block]], sum[k]);
     }

@@ -9,7 +9,7 @@
 namespace mbs::csc_klu {
 
 /// What v and a give of something that is found for both in one sweep.
-using Pair = std::array<double, 2>;
+using Both = std::array<double, 2>;
 
 /// Phi_q in the storage of a JacobianPattern, which has to outlive it.
 template <int dim>
@@ -20,9 +20,9 @@ class Jacobian {
   /// Evaluates Phi (m, written) and Phi_q at the extended positions q.
   void evaluate(const double* q, double* phi);
   /// z (m, written) = Phi_q v and Phi_q a; v and a are n.
-  void multiply(const double* v, const double* a, Pair* z) const;
+  void multiply(const double* v, const double* a, Both* z) const;
   /// y_v, y_a (n, written) = factor Phi_q^T times the v and the a of z (m).
-  void multiply_transposed(const Pair* z, double factor, double* y_v, double* y_a) const;
+  void multiply_transposed(const Both* z, double factor, double* y_v, double* y_a) const;
   /// y (n) -= Phi_q^T z; z is m.
   void subtract_transposed_product(const double* z, double* y) const;
   /// The same for a z (quadratics()) that is zero for the linear constraints.

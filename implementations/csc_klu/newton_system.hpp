@@ -25,7 +25,7 @@ namespace mbs::csc_klu {
 /// share into right(), update_reactions() adds what a solution has of it.
 template <class System>
 concept NewtonSystem = requires(System system, std::span<const double> z,
-                                std::span<const Pair> products) {
+                                std::span<const Both> products) {
   system.evaluate_residual();
   system.assemble();
   { system.factorize() } -> std::same_as<bool>;

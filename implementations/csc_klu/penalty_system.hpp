@@ -45,7 +45,7 @@ class PenaltySystem {
     for (int i = 0; i < equations_.m; ++i) weighted_[i] = factor * rates[i];
     equations_.jacobian.subtract_transposed_product(weighted_.data(), right_.data());
   }
-  void begin_projections(std::span<const Pair> products, std::span<double> right_v,
+  void begin_projections(std::span<const Both> products, std::span<double> right_v,
                          std::span<double> right_a) {
     equations_.jacobian.multiply_transposed(products.data(), -equations_.weight * penalty_,
                                             right_v.data(), right_a.data());

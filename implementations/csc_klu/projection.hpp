@@ -133,7 +133,7 @@ class Projection {
   std::vector<double> start_;              ///< n; v* or a*
   std::vector<double> moved_;              ///< n; what T_0 multiplies
   std::vector<double> right_;              ///< right-hand side of Eq. (15)
-  std::vector<Pair> products_;             ///< m; J v* and J a*
+  std::vector<Both> products_;             ///< m; J v* and J a*
   std::vector<double> begun_v_, begun_a_;  ///< right-hand sides of Eq. (6) or (13), as far as by J
 };
 

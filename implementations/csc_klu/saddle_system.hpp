@@ -56,7 +56,7 @@ class SaddleSystem {
     double* const lower = right_.data() + equations_.n;
     for (int i = 0; i < equations_.m; ++i) lower[i] = -scales_[i] * rates[i];  // Eqs. (12), (13)
   }
-  void begin_projections(std::span<const Pair> products, std::span<double> right_v,
+  void begin_projections(std::span<const Both> products, std::span<double> right_v,
                          std::span<double> right_a) {
     for (int i = 0; i < equations_.m; ++i) {
       right_v[equations_.n + i] = -scales_[i] * products[i][0];  // Eq. (13)

@@ -118,7 +118,7 @@ class NewtonSimulation final : public Simulation {
   Tangent<dim> tangent_;
   std::vector<double> right_v_;  ///< n; right-hand side and solution for v' - v*
   std::vector<double> right_a_;  ///< n; the same for Delta q and a' - a*
-  std::vector<Pair> products_;   ///< m; J v* and J a*
+  std::vector<Both> products_;   ///< m; J v* and J a*
   Solver solver_;
 };
 
