@@ -190,6 +190,24 @@ void Constraints::multiply(const double* x, double* product) const {
   }
 }
 
+void Constraints::write_reactions(double factor, const double* x1, const double* x2,
+                                  double* parts) const {
+  for (const auto& [group, first] : groups_) group->write_reactions(factor, x1, x2, parts);
+  double* part = parts + 2 * first_linear_part_;
+  for (std::size_t row = 1, t = 0; row < linear_begin_.size(); ++row) {
+    const std::size_t end = linear_begin_[row];
+    double sum1 = 0.0, sum2 = 0.0;
+    for (std::size_t s = t; s < end; ++s) {
+      sum1 += factor * linear_coefficient_[s] * x1[linear_variable_[s]];
+      sum2 += factor * linear_coefficient_[s] * x2[linear_variable_[s]];
+    }
+    for (; t < end; ++t) {
+      part[2 * t] = sum1 * linear_coefficient_[t];
+      part[2 * t + 1] = sum2 * linear_coefficient_[t];
+    }
+  }
+}
+
 void Constraints::write_forces(const double* g, double* parts) const {
   for (const auto& [group, first] : groups_) {
     const double* of_group = g + first;

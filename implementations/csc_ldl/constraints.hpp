@@ -36,6 +36,8 @@ class Constraints {
   void evaluate(const double* q);
   /// Phi_q x; x is zero at fixed points.
   void multiply(const double* x, double* product) const;
+  /// factor Phi_q^T Phi_q x for two x, in pairs of parts; x is zero at fixed points.
+  void write_reactions(double factor, const double* x1, const double* x2, double* parts) const;
   /// Phi_q^T g, in parts.
   void write_forces(const double* g, double* parts) const;
   /// factor Phi_q^T Phi_q of all rows but linear ones, in parts.

@@ -27,6 +27,7 @@ LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings, O
       assembly_(model, settings, numbering_, constraints_, elements_),
       row_parts_(constraints_.force_parts()),
       element_parts_(elements_.force_parts()),
+      pairs_(2 * row_parts_.size()),
       are_driven_(!model.driven_points().empty() || !model.driven_values().empty() ||
                   has_factors_of_time(model)) {
   for (int i = 0; i < n_; ++i) minus_Q_[numbering_.state[i]] = -model.force()[i];
@@ -229,27 +230,19 @@ const double* LdlSimulation::velocities_of_all_points() {
   return all_v_.data();
 }
 
-// What x = v* or a* has on the right of Eq. (6) or (13), each solved for what it changes. Phi_q is
-// still the one in T.
-void LdlSimulation::prepare_projection(const Vector& x, Vector& top, Vector& rate) {
-  constraints_.multiply(x.data(), rate.data());
-  std::ranges::fill(top, 0.0);
-  if (!saddle_point_) add_constraints(rate, top);
-}
-
-// -(dt^2/4) alpha Phi_q^T rate.
-void LdlSimulation::add_constraints(const Vector& rate, Vector& top) {
-  const double factor = -dt_ * dt_ / 4 * alpha_;
-  for (int k = 0; k < m_; ++k) g_[k] = factor * rate[k];
-  constraints_.write_forces(g_.data(), row_parts_.data());
-  row_forces_.apply(top.data(), row_parts_.data(), top.data());
-}
-
-// Before Phi_q is evaluated anew.
+// What v* and a* have on the right of Eq. (6) or (13), which are solved for what they change. Phi_q
+// is still the one in T.
 void LdlSimulation::prepare_projections() {
   phases_.enter(Phase::projection);
-  prepare_projection(v_, top_v_, rate_v_);
-  if (settings_.projections == Projections::both) prepare_projection(a_, top_a_, rate_a_);
+  std::ranges::fill(top_v_, 0.0);
+  std::ranges::fill(top_a_, 0.0);
+  if (saddle_point_) {
+    constraints_.multiply(v_.data(), rate_v_.data());
+    constraints_.multiply(a_.data(), rate_a_.data());
+  } else {
+    constraints_.write_reactions(-dt_ * dt_ / 4 * alpha_, v_.data(), a_.data(), pairs_.data());
+    row_forces_.apply_pairs(pairs_.data(), top_v_.data(), top_a_.data());
+  }
 }
 
 // Eq. (6) or (13), with the last pass's factors.
@@ -269,7 +262,10 @@ void LdlSimulation::project(Vector& x, Vector& top, const Vector& rate, bool has
   if (saddle_point_) {
     for (int k = 0; k < m_; ++k) bottom_[k] = -rate[k] - (has_rate ? rate_[k] : 0.0);
   } else if (has_rate) {
-    add_constraints(rate_, top);
+    const double factor = -dt_ * dt_ / 4 * alpha_;
+    for (int k = 0; k < m_; ++k) g_[k] = factor * rate_[k];
+    constraints_.write_forces(g_.data(), row_parts_.data());
+    row_forces_.apply(top.data(), row_parts_.data(), top.data());
   }
   solve(top);
   phases_.enter(Phase::projection);

@@ -39,7 +39,6 @@ class LdlSimulation final : public Simulation {
 
   [[nodiscard]] const double* velocities_of_all_points();
   void prepare_projection(const Vector& x, Vector& top, Vector& rate);
-  void add_constraints(const Vector& rate, Vector& top);
   void project(Vector& x, Vector& top, const Vector& rate, bool has_rate);
 
   const Model& model_;
@@ -59,6 +58,7 @@ class LdlSimulation final : public Simulation {
   Vector q_ = Vector(at_.total), v_ = q_, a_ = q_, lambda_ = Vector(m_);
   Vector minus_Q_ = Vector(n_);                            // its part that is no element's
   Vector row_parts_, element_parts_;                       // of forces
+  Vector pairs_;                                           // the first, for two vectors
   Sums row_forces_, element_forces_;                       // by variable
   Vector top_ = Vector(n_), top_v_ = top_, top_a_ = top_;  // right-hand sides, then solutions
   Vector bottom_ = Vector(m_);                             // of rows, saddle-point form
