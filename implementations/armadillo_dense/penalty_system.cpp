@@ -11,7 +11,6 @@ PenaltySystem::PenaltySystem(const Model& model, const StepSettings& settings)
       solver_(model.variables()),
       mu_(m_, arma::fill::zeros),
       rhs_(n_, arma::fill::zeros),
-      share_of_v_(n_, arma::fill::zeros),
       share_of_a_(n_, arma::fill::zeros),
       time_terms_(drivers_.drive_linear() ? m_ : constraints_.quadratics(), arma::fill::zeros) {
   if (!model.linear_constraints().empty()) add_linear_constraints(model);
@@ -43,9 +42,7 @@ void PenaltySystem::assemble() {
   if (forces_.stiffen()) forces_.add_to(T.memptr(), T.n_rows);
 }
 
-void PenaltySystem::begin_velocity_projection(const arma::vec& v) {
-  penalty_product(v, share_of_v_);
-}
+void PenaltySystem::begin_velocity_projection(const arma::vec& v) { penalty_product(v, rhs_); }
 
 void PenaltySystem::begin_acceleration_projection(const arma::vec& a) {
   penalty_product(a, share_of_a_);
@@ -58,8 +55,7 @@ void PenaltySystem::penalty_product(const arma::vec& x, arma::vec& out) {
 }
 
 void PenaltySystem::velocity_projection(const arma::vec& x) {
-  rhs_ = share_of_v_;  // Eq. (6)
-  if (drivers_.empty()) return;
+  if (drivers_.empty()) return;  // Eq. (6)
   rates(x, time_terms_);
   subtract_time_terms();
 }

@@ -52,7 +52,6 @@ class PenaltySystem : public Assembly {
                         ///< without them
   arma::vec mu_;          ///< m, lambda + alpha Phi, then J v*, J a*
   arma::vec rhs_;         ///< n, right-hand side, then solution
-  arma::vec share_of_v_;  ///< n, -h α Jᵀ J v*
   arma::vec share_of_a_;  ///< n, -h α Jᵀ J a*
   arma::vec time_terms_;  ///< of the rows that can be nonzero: Φt, then Φ̇q v' + Φ̇t
 };

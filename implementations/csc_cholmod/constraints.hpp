@@ -21,7 +21,7 @@ class Constraints {
   /// Phi (rows) at the q of the last evaluate_jacobian(). Eqs. (7), (8)
   void evaluate_phi(const double* q);
   /// result (rows) += factor * Phi_q x, at the q of the last evaluate_jacobian(); x (all places) is
-  /// zero behind the unknowns.
+  /// zero behind the unknowns. Not after add_velocity_terms(), which takes the place of u and w.
   void add_jacobian_product(const double* x, double factor, double* result) const;
   /// result (rows) += factor * what velocities v (all places) alone give of Phi-double-dot.
   void add_velocity_terms(const double* v, double factor, double* result);

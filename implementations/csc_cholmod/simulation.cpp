@@ -157,6 +157,7 @@ template <typename Form>
 void CholmodSimulation<Form>::correct(const std::vector<double>& right, std::vector<double>& x) {
   phases_.enter(Phase::solve);
   form_.solve(right.data(), delta_.data());  // Eq. (6), (13)
+  phases_.enter(Phase::projection);
   for (std::size_t i = 0; i < v_.size(); ++i) x[i] += delta_[i];
 }
 

@@ -96,6 +96,7 @@ class Projection {
     for (std::size_t i = 0; i < right.size(); ++i) right[i] += begun[i];
     phases_.enter(Phase::solve);
     system_.solve();
+    phases_.enter(Phase::projection);
     for (int i = 0; i < equations_.n; ++i) x[i] += right[i];
   }
 

@@ -1,7 +1,6 @@
 // The step of paper/README.md over sparse storage, and the choice of a scheme.
 #include "simulation.hpp"
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -58,6 +57,7 @@ class NewtonSimulation final : public Simulation {
       }
       phases_.enter(Phase::solve);
       solver_.solve(right_a_);
+      phases_.enter(Phase::projection);
       phases_.enter(Phase::other);
       if (correct(e.n, settings_.step, settings_.tolerance, right_a_.data(), e.q.data(), e.v.data(),
                   e.a.data())) {
@@ -99,9 +99,9 @@ class NewtonSimulation final : public Simulation {
     if (e.has_drivers) e.drivers.subtract_rates(e.jacobian, e.q.data(), factor, right_v_.data());
     phases_.enter(Phase::solve);
     solver_.solve(right_v_);
+    phases_.enter(Phase::projection);
     for (int i = 0; i < e.n; ++i) e.v[i] += right_v_[i];
     if (settings_.projections != Projections::both) return;
-    phases_.enter(Phase::projection);
     e.jacobian.velocity_term(e.v.data(), factor, e.reaction.data());
     e.jacobian.subtract_transposed_quadratics(e.reaction.data(), right_a_.data());
     if (e.has_drivers) {
@@ -109,6 +109,7 @@ class NewtonSimulation final : public Simulation {
     }
     phases_.enter(Phase::solve);
     solver_.solve(right_a_);
+    phases_.enter(Phase::projection);
     for (int i = 0; i < e.n; ++i) e.a[i] += right_a_[i];
   }
 

@@ -67,7 +67,7 @@ class Factorization {
 struct Guard {
   double pivot_tolerance = kPivotTolerance;
   /// Largest max|b - T x| / max(|T| |x| + |b|) of a solution; infinity never gives up. Good pivots
-  /// stay below 6e-16 in all scenes, so that this is a growth of about 20; see README.md.
+  /// stay well below it in all scenes; see README.md.
   double backward_error = 1e-14;
 };
 

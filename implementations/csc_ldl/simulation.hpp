@@ -38,7 +38,6 @@ class LdlSimulation final : public Simulation {
   void project();
 
   [[nodiscard]] const double* velocities_of_all_points();
-  void prepare_projection(const Vector& x, Vector& top, Vector& rate);
   void project(Vector& x, Vector& top, const Vector& rate, bool has_rate);
 
   const Model& model_;
@@ -56,14 +55,14 @@ class LdlSimulation final : public Simulation {
 
   // q, v and a have fixed points behind the n variables; there v and a are zero.
   Vector q_ = Vector(at_.total), v_ = q_, a_ = q_, lambda_ = Vector(m_);
-  Vector minus_Q_ = Vector(n_);                            // its part that is no element's
-  Vector row_parts_, element_parts_;                       // of forces
-  Vector pairs_;                                           // the first, for two vectors
-  Sums row_forces_, element_forces_;                       // by variable
+  Vector minus_Q_ = Vector(n_);       // its part that is no element's
+  Vector row_parts_, element_parts_;  // of forces
+  Vector pairs_;                      // the first, for two vectors (penalty form)
+  Sums row_forces_, element_forces_;  // by variable
   Vector top_ = Vector(n_), top_v_ = top_, top_a_ = top_;  // right-hand sides, then solutions
   Vector bottom_ = Vector(m_);                             // of rows, saddle-point form
   Vector g_ = Vector(m_);                                  // what Phi_q^T is multiplied with
-  // In the projections: Phi_q v*, Phi_q a*, and what has to be added to them.
+  // In the projections: Phi_q v*, Phi_q a* (saddle-point form), and what is added to them.
   Vector rate_v_ = Vector(m_), rate_a_ = rate_v_, rate_ = rate_v_;
   const bool are_driven_;               // points, values, masses or factors
   Vector driven_v_, driven_a_, all_v_;  // with at_.total entries, if driven

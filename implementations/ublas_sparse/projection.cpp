@@ -41,12 +41,12 @@ void UblasSimulation<Product>::project() {
 }
 
 template <class Product>
-void UblasSimulation<Product>::correct(Vector& rows, Vector& x) {
-  rows *= -scale_ * settings_.penalty;
+void UblasSimulation<Product>::correct(Vector& right, Vector& x) {
+  right *= -scale_ * settings_.penalty;
   phases_.enter(Phase::solve);
-  solver_.solve(rows);
+  solver_.solve(right);
   phases_.enter(Phase::projection);
-  noalias(x) += rows;  // Eq. (6)
+  noalias(x) += right;  // Eq. (6)
 }
 
 template void UblasSimulation<ExpressionProduct>::project();

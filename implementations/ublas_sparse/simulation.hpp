@@ -32,8 +32,8 @@ class UblasSimulation final : public Simulation {
   [[nodiscard]] bool update();
   /// Both projections, or that of v alone; Phi_q comes in as that of the last pass.
   void project();
-  /// Solves Eq. (6) for the change of x, v or a. `rows`, J^T J x + Phi_q^T weight_ (n), is spent.
-  void correct(Vector& rows, Vector& x);
+  /// Solves Eq. (6) for the change of x, v or a. `right`, J^T J x + Phi_q^T weight_ (n), is spent.
+  void correct(Vector& right, Vector& x);
   /// M + (step / 2) C + (step^2 / 4) K of the last pass; M itself where nothing adds to it.
   [[nodiscard]] const SparseMatrix& S() const { return forces_.has_stiffness() ? S_ : M_; }
 

@@ -112,8 +112,8 @@ double largest_of(const std::vector<double>& x) {
   return largest;
 }
 
-/// What may be allowed of a projected a': Eq. (6) makes it of M a*, which off the constraints is
-/// thousands of times larger and cancels; an error of T's solution is a share of that.
+/// What may be allowed of a projected a': it is a* and a solved change, which off the constraints
+/// are thousands of times larger and cancel; an error of T's solution is a share of that.
 double allowed_of_projected(const Maker& make, StepSettings settings, const State& state) {
   settings.max_passes = 1;
   settings.projections = Projections::velocity;

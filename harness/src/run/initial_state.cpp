@@ -106,8 +106,8 @@ double smallest_constraint_eigenvalue(const Model& model, std::span<const double
     for (int k = 0; k < m; ++k) y[k] = 1.0L + 0.5L * std::sin(1.0L + k);
     Real inverse = 0;
     constexpr int kRounds = 30;
-    // Ended before, where it stands still: so strictly that a second vector cannot pass for the first (the quotient
-    // shows only the square of what is in it of the other).
+    // Ended before, where it stands still: so strictly that a second vector cannot pass for the
+    // first (the quotient shows only the square of what is in it of the other).
     constexpr Real kStill = 1e-17L;
     for (int round = 0; round < kRounds; ++round) {
       if (in_range) y -= epsilon * solve(y);

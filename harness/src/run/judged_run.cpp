@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "printable.hpp"
-#include "run/rounding.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -265,9 +264,6 @@ void JudgedRun::conclude() {
     summary_.reason += reason;
   };
   add(watch_.doubt());
-  if (adds_local_errors_) {
-    add(rounding_degradation(*access_.model, settings_.step, steps_, judge_.length()));
-  }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
   } else if (half_ && !watch_.passage().empty()) {
@@ -292,8 +288,11 @@ std::string JudgedRun::beyond_estimates() const {
   }
   const double local_allowed = AccurateBounds{}.local_error * judge_.length();
   if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
-  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step",
-                     *summary_.local_error_sum, local_allowed);
+  // Light parts are moved by what the penalty form's projections leave.
+  return fmt::format(
+      "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step{}", *summary_.local_error_sum,
+      local_allowed,
+      settings_.step.scheme == Scheme::penalty ? ", or with light parts --scheme saddle-point" : "");
 }
 
 RunSummary JudgedRun::finish() {

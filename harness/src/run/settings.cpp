@@ -68,18 +68,14 @@ double automatic_beta(const Model& model, const StepSettings& settings, double s
   const bool single = settings.precision == Precision::single_precision;
   const double at = single ? 2 * kMeasuredTurn : kMeasuredTurn;
   const double mean = mean_constraint_eigenvalue(model);
-  const Turning fastest = fastest_turning(model);
   double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
-  constexpr double kQuiet = 3e-9;  // of the length
-  const double stable = kStable / smallest, least = least_constraint_diagonal(model);
-  if (rounding_noise(model, settings, stable * least) <= kQuiet * fastest.length)
-    measured = std::max(measured, stable);
-  const double turn = fastest.rate * settings.step;
+  if (!single) measured = std::max(measured, kStable / smallest);
+  const double turn = fastest_turning(model).rate * settings.step;
   if (turn == 0.0) return measured;
   const double ratio = turn / at;
   if (ratio <= 1.0)
     return std::min(measured / (ratio * ratio), std::max(measured, (single ? 6e4 : 4e6) / mean));
-  const double nonlinear = 0.6 / (least * std::pow(turn, 3));
+  const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
   return std::max(std::min(measured, nonlinear), measured / 100);
 }
 
@@ -98,13 +94,26 @@ double least_constraint_diagonal(const Model& model) {
   return least;
 }
 
+double slowest_mode(const Model& model) {
+  constexpr double kSlow =
+      2e-7;  // of the mean one; stability asks for more than the rule from here on
+  const double at_start = smallest_constraint_eigenvalue(model, model.initial_position());
+  const double rate = fastest_turning(model).rate;
+  if (rate == 0.0 || !(at_start < kSlow * mean_constraint_eigenvalue(model))) return at_start;
+  const double t = 0.1 / rate;
+  State state = initial_state(model);
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    state.q[i] += t * (state.v[i] + t / 2 * state.a[i]);
+  }
+  const double later = smallest_constraint_eigenvalue(model, state.q);
+  return std::isfinite(later) ? std::max(at_start, later) : at_start;
+}
+
 double automatic_penalty(const Model& model, const StepSettings& settings,
                          std::optional<double> smallest) {
   if (model.constraints() == 0) return 1.0;
   const double per_beta = 4 / (settings.step * settings.step);
-  const auto slowest = [&] {
-    return smallest ? *smallest : smallest_constraint_eigenvalue(model, model.initial_position());
-  };
+  const auto slowest = [&] { return smallest ? *smallest : slowest_mode(model); };
   if (settings.scheme == Scheme::penalty) {
     return per_beta * automatic_beta(model, settings, slowest());
   }
@@ -125,9 +134,10 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
   if (text == "auto") {
     value = automatic_penalty(model, settings);
     if (value > 0.0 && std::isfinite(value)) return value;
-    throw UsageError(fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
-                                 "lengths or masses are out of range; name a number",
-                                 value, settings.step));
+    throw UsageError(
+        fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
+                    "lengths or masses are out of range; name a number",
+                    value, settings.step));
   }
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
