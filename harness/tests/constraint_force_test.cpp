@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/output_values.hpp"
+#include "run/run.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 
@@ -126,6 +128,27 @@ TEST(ConstraintForce, OfALinearConstraintIsTheMultiplierOfPhiAsGiven) {
                      "terms": [{"point": "P", "axis": "y", "coefficient": 4}]}],
     "outputs": [{"name": "f", "constraint_force": "floor"}]})");
   EXPECT_NEAR(values[0], -5.0, 1e-9);  // -4 lambda = 20 N
+}
+
+TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
+  SceneData data = parse_scene(R"({"gravity": [0, -9.81],
+      "points": [{"name": "A", "position": [0, 0], "fixed": true},
+                 {"name": "B", "position": [1, 0]}],
+      "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1}],
+      "outputs": [{"name": "pull", "constraint_force": "rod"}]})",
+                               "test");
+  const Scene scene{"test", Model(data.model), {}, {}, data.elements, data.assembly};
+  const auto drowns = [&](double penalty, Scheme scheme) {
+    RunSettings settings;
+    settings.duration = 0.1;
+    settings.step.penalty = penalty;
+    settings.step.scheme = scheme;
+    return run(scene, test::reference(), settings).reason.find("% of the constraint forces") !=
+           std::string::npos;
+  };
+  EXPECT_FALSE(drowns(1e9, Scheme::penalty));
+  EXPECT_TRUE(drowns(1e16, Scheme::penalty));
+  EXPECT_FALSE(drowns(1e16, Scheme::saddle_point));
 }
 
 TEST(Energy, IncludesWhatDrivenPointsCarry) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "printable.hpp"
+#include "run/constraint_force.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -264,6 +265,7 @@ void JudgedRun::conclude() {
     summary_.reason += reason;
   };
   add(watch_.doubt());
+  add(drowned_forces());
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
   } else if (half_ && !watch_.passage().empty()) {
@@ -275,6 +277,25 @@ void JudgedRun::conclude() {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";
   }
+}
+
+/// Of forces that the scene asks for.
+std::string JudgedRun::drowned_forces() const {
+  const auto is_force = [](const Output& output) {
+    return output.kind == Output::Kind::constraint_force;
+  };
+  if (settings_.step.scheme != Scheme::penalty ||
+      settings_.step.precision == Precision::single_precision ||
+      std::ranges::none_of(scene_.elements.outputs, is_force)) {
+    return "";
+  }
+  State state;
+  access_.get_state(state);
+  constexpr double kAllowed = 0.1;
+  const double share = rounding_of_penalty_forces(*access_.model, settings_.step.penalty, state);
+  if (share <= kAllowed) return "";
+  return fmt::format("rounding may be {:.0f} % of the constraint forces: --scheme saddle-point",
+                     100 * share);
 }
 
 std::string JudgedRun::beyond_estimates() const {
@@ -289,10 +310,11 @@ std::string JudgedRun::beyond_estimates() const {
   const double local_allowed = AccurateBounds{}.local_error * judge_.length();
   if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
   // Light parts are moved by what the penalty form's projections leave.
-  return fmt::format(
-      "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step{}", *summary_.local_error_sum,
-      local_allowed,
-      settings_.step.scheme == Scheme::penalty ? ", or with light parts --scheme saddle-point" : "");
+  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step{}",
+                     *summary_.local_error_sum, local_allowed,
+                     settings_.step.scheme == Scheme::penalty
+                         ? ", or with light parts --scheme saddle-point"
+                         : "");
 }
 
 RunSummary JudgedRun::finish() {
