@@ -35,19 +35,14 @@ bool is_too_long(const PenaltyWindow& window, const StepSettings& settings) {
 std::string step_warning(const PenaltyWindow& window, const StepSettings& settings,
                          PenaltyFrom from) {
   const bool is_long = is_too_long(window, settings);
-  const bool no_step = window.widest < least_width(window, settings, from);
-  const char* precision =
-      is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
-  if (no_step) {
-    return fmt::format(
-        "no step suits the penalty form on this scene (an estimate: mbs describe): try --scheme "
-        "saddle-point{}",
-        precision);
-  }
-  return fmt::format(
-      "the step {:g} s is too {} for the penalty form on this scene (an estimate: mbs describe): "
-      "try --scheme saddle-point{}, or a {} step",
-      settings.step, is_long ? "long" : "short", precision, is_long ? "shorter" : "longer");
+  const bool is_double = settings.precision == Precision::double_precision;
+  const std::string what = fmt::format(
+      "the penalty form on this scene{} (an estimate: mbs describe): try --scheme saddle-point{}",
+      is_double ? ", if it passes singular positions" : "",
+      is_long || is_double ? "" : ", --precision double");
+  if (window.widest < least_width(window, settings, from)) return "no step suits " + what;
+  return fmt::format("the step {:g} s is too {} for {}, or a {} step", settings.step,
+                     is_long ? "long" : "short", what, is_long ? "shorter" : "longer");
 }
 
 }  // namespace
