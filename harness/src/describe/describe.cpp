@@ -21,6 +21,7 @@
 #include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
+#include "run/rounding.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"
 
@@ -89,6 +90,14 @@ json scheme_json(Scheme scheme, const std::string& reason) {
   return {{"take", name_of(scheme)}, {"reason", reason}};
 }
 
+/// Of a run of usual length.
+std::string rounding_warning(const Model& model, const StepSettings& settings) {
+  constexpr double kDuration = 10.0;  // s
+  const std::string found = rounding_degradation(
+      model, settings, std::lround(kDuration / settings.step), judged_length(model));
+  return found.empty() ? "" : fmt::format("in {:g} s {}", kDuration, found);
+}
+
 /// The window, and what is likely to go wrong with the automatic factor and this step.
 void add_settings(json& result, const Model& model, const Structure& structure, double smallest,
                   StepSettings settings) {
@@ -102,6 +111,7 @@ void add_settings(json& result, const Model& model, const Structure& structure, 
     const PenaltyWindow window = penalty_window(model, structure, smallest, settings);
     result["penalty_window"] = penalty_json(window, settings);
     warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
+    if (warnings.back().empty()) warnings.push_back(rounding_warning(model, settings));
     const bool is_open = warnings.back().empty();
     result["scheme"] = scheme_json(
         is_open ? Scheme::penalty : Scheme::saddle_point,
@@ -148,7 +158,7 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
   const double n = model.variables();
   const double m = model.constraints();
   const Structure structure = find_structure(model);
-  const double smallest = slowest_mode(model);
+  const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   const auto jacobian_entries = jacobian(model, 0.0, model.initial_position()).size();
   json result = {
       {"scene", scene.name},

@@ -14,7 +14,7 @@ struct Passes {
 inline constexpr int kPassSteps = 100;
 
 /// With the step of `settings`, and penalty factor and tolerance as they are chosen without being
-/// asked for; `smallest`: slowest_mode(). README.md here says how.
+/// asked for; `smallest`: smallest_constraint_eigenvalue() at the start. README.md here says how.
 /// Takes three factorizations of the saddle-point matrix.
 Passes expected_passes(const Scene& scene, double smallest, const StepSettings& settings);
 

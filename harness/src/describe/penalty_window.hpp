@@ -22,7 +22,7 @@ struct PenaltyWindow {
 };
 
 /// For the step and precision of `settings`; mixed precision has double's. The model must have a
-/// constraint that is not redundant. `smallest`: slowest_mode().
+/// constraint that is not redundant. `smallest`: smallest_constraint_eigenvalue() at the start.
 PenaltyWindow penalty_window(const Model& model, const Structure& structure, double smallest,
                              const StepSettings& settings);
 

@@ -120,7 +120,9 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
     const Structure structure = find_structure(model);
     add(start_warning(model, structure));
     if (settings.scheme == Scheme::penalty) {
-      const PenaltyWindow window = penalty_window(model, structure, slowest_mode(model), settings);
+      const PenaltyWindow window =
+          penalty_window(model, structure,
+                         smallest_constraint_eigenvalue(model, model.initial_position()), settings);
       add(penalty_warning(window, settings, from));
     }
   }

@@ -11,6 +11,7 @@
 
 #include "printable.hpp"
 #include "run/constraint_force.hpp"
+#include "run/rounding.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -265,6 +266,9 @@ void JudgedRun::conclude() {
     summary_.reason += reason;
   };
   add(watch_.doubt());
+  if (adds_local_errors_) {
+    add(rounding_degradation(*access_.model, settings_.step, steps_, judge_.length()));
+  }
   add(drowned_forces());
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;

@@ -61,6 +61,17 @@ double rounding_noise(const Model& model, const StepSettings& settings, double s
   return unit_roundoff(settings.precision) * rounding_length(model) * std::sqrt(1 + stiffness);
 }
 
+/// Whether the slowest mode is as slow wherever the mechanism is, as of long ones with leverage:
+/// its eigenvalue stays when all coordinates are moved by a thousandth of `length` (m). At a
+/// singular position it does not.
+bool is_slow_everywhere(const Model& model, double smallest, double length) {
+  std::vector<double> q(model.initial_position().begin(), model.initial_position().end());
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    q[i] += 1e-3 * length * std::sin(1.0 + static_cast<double>(i * i % 1009));
+  }
+  return smallest_constraint_eigenvalue(model, q) < 2 * smallest;
+}
+
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
 double automatic_beta(const Model& model, const StepSettings& settings, double smallest) {
   // The coarse tolerance of single precision leaves the multipliers one pass a step, which needs
@@ -68,14 +79,21 @@ double automatic_beta(const Model& model, const StepSettings& settings, double s
   const bool single = settings.precision == Precision::single_precision;
   const double at = single ? 2 * kMeasuredTurn : kMeasuredTurn;
   const double mean = mean_constraint_eigenvalue(model);
+  const Turning fastest = fastest_turning(model);
   double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
-  if (!single) measured = std::max(measured, kStable / smallest);
-  const double turn = fastest_turning(model).rate * settings.step;
+  constexpr double kQuiet = 3e-9;  // of the length
+  const double stable = kStable / smallest, least = least_constraint_diagonal(model);
+  if (stable > measured &&
+      (rounding_noise(model, settings, stable * least) <= kQuiet * fastest.length ||
+       (!single && is_slow_everywhere(model, smallest, fastest.length)))) {
+    measured = stable;
+  }
+  const double turn = fastest.rate * settings.step;
   if (turn == 0.0) return measured;
   const double ratio = turn / at;
   if (ratio <= 1.0)
     return std::min(measured / (ratio * ratio), std::max(measured, (single ? 6e4 : 4e6) / mean));
-  const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
+  const double nonlinear = 0.6 / (least * std::pow(turn, 3));
   return std::max(std::min(measured, nonlinear), measured / 100);
 }
 
@@ -94,26 +112,13 @@ double least_constraint_diagonal(const Model& model) {
   return least;
 }
 
-double slowest_mode(const Model& model) {
-  constexpr double kSlow =
-      2e-7;  // of the mean one; stability asks for more than the rule from here on
-  const double at_start = smallest_constraint_eigenvalue(model, model.initial_position());
-  const double rate = fastest_turning(model).rate;
-  if (rate == 0.0 || !(at_start < kSlow * mean_constraint_eigenvalue(model))) return at_start;
-  const double t = 0.1 / rate;
-  State state = initial_state(model);
-  for (std::size_t i = 0; i < state.q.size(); ++i) {
-    state.q[i] += t * (state.v[i] + t / 2 * state.a[i]);
-  }
-  const double later = smallest_constraint_eigenvalue(model, state.q);
-  return std::isfinite(later) ? std::max(at_start, later) : at_start;
-}
-
 double automatic_penalty(const Model& model, const StepSettings& settings,
                          std::optional<double> smallest) {
   if (model.constraints() == 0) return 1.0;
   const double per_beta = 4 / (settings.step * settings.step);
-  const auto slowest = [&] { return smallest ? *smallest : slowest_mode(model); };
+  const auto slowest = [&] {
+    return smallest ? *smallest : smallest_constraint_eigenvalue(model, model.initial_position());
+  };
   if (settings.scheme == Scheme::penalty) {
     return per_beta * automatic_beta(model, settings, slowest());
   }

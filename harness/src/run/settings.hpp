@@ -13,14 +13,16 @@ namespace mbs {
 ///
 ///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean)
 ///
-/// (in double precision at least 2 / s_min: a step of one pass is stable from beta s_min = 1 on)
-/// and, with x = turn / 6.8e-3 (in single precision turn / 13.6e-3, and 6e4 for 4e6),
+/// (at least 2 / s_min, as a step of one pass is stable from beta s_min = 1 on; but not if s_min is
+/// small only where the motion starts and rounding would then move heavy points by more than 3e-9 l
+/// in a pass) and, with x = turn / 6.8e-3 (in single
+/// precision turn / 13.6e-3, and 6e4 for 4e6),
 ///
 ///   beta = min(beta_0 / x^2, max(beta_0, 4e6 / s_mean))          for shorter steps,
 ///   beta = max(min(beta_0, 0.6 / (s_row turn^3)), beta_0 / 100)  for longer ones.
 ///
-/// s_min is slowest_mode(), s_mean the mean and s_row the least above 0 of the diagonal of
-/// S = Phi_q M^-1 Phi_q^T at the start with the diagonal of M (m^2/kg); omega is
+/// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean
+/// and s_row the least above 0 of its diagonal with the diagonal of M (m^2/kg); omega is
 /// fastest_turning(). The multiplier iteration contracts by 1 / (1 + beta s): the first term asks
 /// for a factor of 31 of the slowest mode, the lower bound for 4000 of the mean one, which singular
 /// positions need, and the upper bound stays clear of cancellation. The shorter a step, the nearer
@@ -37,12 +39,6 @@ namespace mbs {
 /// of `settings`; `smallest`: s_min, where it is known already.
 double automatic_penalty(const Model& model, const StepSettings& settings,
                          std::optional<double> smallest = std::nullopt);
-
-/// s_min: smallest_constraint_eigenvalue() at the start. If it is less than 2e-7 s_mean, at which
-/// stability begins to decide, that of 0.1 / omega s later may count, omega being the rate of
-/// fastest_turning(), and the larger one is taken: a mechanism that starts near a singular position
-/// does not stay there, and the penalty factor for its start would be far too much for its motion.
-double slowest_mode(const Model& model);
 
 /// Diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, at the start (m), m^2/kg.
 std::vector<double> constraint_diagonal(const Model& model);
