@@ -1,14 +1,19 @@
 // Forces, torques and energies of driven scenes against closed forms.
+#include "run/constraint_force.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/output_values.hpp"
 #include "run/run.hpp"
+#include "scene/scene.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 
@@ -149,6 +154,16 @@ TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
   EXPECT_FALSE(drowns(1e9, Scheme::penalty));
   EXPECT_TRUE(drowns(1e16, Scheme::penalty));
   EXPECT_FALSE(drowns(1e16, Scheme::saddle_point));
+}
+
+TEST(ConstraintForce, IsNotDrownedWhereNothingActs) {
+  const Model model(four_bar(1));
+  State state = initial_state(model);
+  EXPECT_GT(rounding_of_penalty_forces(model, 1e20, state), 0.1);
+  ModelData weightless = four_bar(1);
+  std::ranges::fill(weightless.force, 0.0);
+  std::ranges::fill(state.lambda, 0.0);
+  EXPECT_EQ(rounding_of_penalty_forces(Model(std::move(weightless)), 1e20, state), 0.0);
 }
 
 TEST(Energy, IncludesWhatDrivenPointsCarry) {

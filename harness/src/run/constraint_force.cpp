@@ -126,14 +126,17 @@ double rounding_of_penalty_forces(const Model& model, double penalty, const Stat
     double& largest = gradient[static_cast<std::size_t>(entry.row)];
     largest = std::max(largest, std::abs(entry.value));
   }
+  std::vector<double> applied(state.q.size());
+  applied_force(model, state.t, state.q, state.v, applied);
   double coordinate = 0.0, rounding = 0.0, force = 0.0;
   for (const double q : state.q) coordinate = std::max(coordinate, std::abs(q));
+  for (const double load : applied) force = std::max(force, std::abs(load));
   for (std::size_t k = 0; k < gradient.size(); ++k) {
     rounding = std::max(rounding, penalty * gradient[k] * gradient[k] * coordinate *
                                       std::numeric_limits<double>::epsilon());
     force = std::max(force, gradient[k] * std::abs(state.lambda[k]));
   }
-  return rounding == 0.0 ? 0.0 : rounding / force;
+  return force == 0.0 ? 0.0 : rounding / force;
 }
 
 }  // namespace mbs
