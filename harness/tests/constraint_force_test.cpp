@@ -1,6 +1,4 @@
 // Forces, torques and energies of driven scenes against closed forms.
-#include "run/constraint_force.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/output_values.hpp"
+#include "run/rounding.hpp"
 #include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "scene_file/load_scene.hpp"

@@ -1,5 +1,4 @@
-// What the schemes have in common: M, the residual and products with Phi_q, over the constraints
-// and forces.
+// What the schemes have in common: M and the residual, over the constraints and forces.
 #include "assembly.hpp"
 
 #include <algorithm>
@@ -51,10 +50,6 @@ void Assembly::negative_residual(const arma::vec& x, const arma::vec& v, const a
   if (!forces_.empty()) forces_.evaluate(x, v, rhs);
   add_symmetric_product(-h_, M_, a.memptr(), rhs.memptr());
   add_product(-h_, constraints_.jacobian(), n_, m_, mu.memptr(), rhs.memptr());
-}
-
-void Assembly::jacobian_product(const arma::vec& x, arma::vec& out) const {
-  constraints_.multiply(x, out);
 }
 
 void Assembly::accelerations(const arma::vec& x, const arma::vec& v, arma::vec& out) const {

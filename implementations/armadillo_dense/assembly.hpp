@@ -1,5 +1,4 @@
-// What the schemes have in common: M, the residual and products with Phi_q, over the constraints
-// and forces.
+// What the schemes have in common: M and the residual, over the constraints and forces.
 #pragma once
 
 #include <armadillo>
@@ -39,8 +38,6 @@ class Assembly {
   /// the forces, and with them C and K, which what follows uses.
   void negative_residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                          const arma::vec& mu, arma::vec& rhs);
-  /// out (m) = Phi_q x, with the first n entries of x.
-  void jacobian_product(const arma::vec& x, arma::vec& out) const;
   /// out = Phi_t, of all m rows, or of the first ones if the others are zero; only if driven.
   void rates(const arma::vec& x, arma::vec& out) const { drivers_.evaluate_rates(x, out); }
   /// out = derivative of (Phi_q v + Phi_t) without its a, likewise, driven or not.

@@ -49,7 +49,7 @@ void PenaltySystem::begin_acceleration_projection(const arma::vec& a) {
 }
 
 void PenaltySystem::penalty_product(const arma::vec& x, arma::vec& out) {
-  jacobian_product(x, mu_);
+  constraints_.multiply(x, mu_);
   out.zeros();
   add_product(-h_ * alpha_, constraints_.jacobian(), n_, m_, mu_.memptr(), out.memptr());
 }

@@ -30,8 +30,8 @@ class SaddlePointSystem : public Assembly {
 
   /// Products of v*, a* (n) with J, the Phi_q of the matrix: to be taken before the evaluate() at
   /// the final q'.
-  void begin_velocity_projection(const arma::vec& v) { jacobian_product(v, Jv_); }
-  void begin_acceleration_projection(const arma::vec& a) { jacobian_product(a, Ja_); }
+  void begin_velocity_projection(const arma::vec& v) { constraints_.multiply(v, Jv_); }
+  void begin_acceleration_projection(const arma::vec& a) { constraints_.multiply(a, Ja_); }
   /// Right-hand sides of Eq. (13) for v' - v* and a' - a*, with v'.
   void velocity_projection(const arma::vec& x);
   void acceleration_projection(const arma::vec& x, const arma::vec& v);

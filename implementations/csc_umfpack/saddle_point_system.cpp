@@ -49,7 +49,7 @@ void SaddlePointSystem<D>::start_projection(const double* moving, double* rhs) c
 template <int D>
 void SaddlePointSystem<D>::add_rates(const Drivers<D>& drivers, const double* q,
                                      double* rhs) const {
-  if (!drivers.empty()) drivers.add_rates(q, -1.0, rhs + n_);  // Eq. (13)
+  drivers.add_rates(q, -1.0, rhs + n_);  // Eq. (13)
 }
 
 template <int D>

@@ -90,19 +90,21 @@ template <class Form>
 void SparseSimulation<Form>::project_velocities() {
   phases_.enter(Phase::projection);
   form_.form_velocity_projection();
-  phases_.enter(Phase::solve);
-  form_.solve();  // Eqs. (6), (13), velocities
-  phases_.enter(Phase::projection);
-  mechanism_.v.head(form_.delta().size()) += form_.delta();
+  solve_projection(mechanism_.v);
 }
 
 template <class Form>
 void SparseSimulation<Form>::project_accelerations() {
   form_.form_acceleration_projection();
+  solve_projection(mechanism_.a);
+}
+
+template <class Form>
+void SparseSimulation<Form>::solve_projection(Vector& x) {
   phases_.enter(Phase::solve);
-  form_.solve();  // Eqs. (6), (13), accelerations
+  form_.solve();  // Eqs. (6), (13)
   phases_.enter(Phase::projection);
-  mechanism_.a += form_.delta();
+  x.head(form_.delta().size()) += form_.delta();  // driven points have v alone
 }
 
 template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;

@@ -38,6 +38,8 @@ class SparseSimulation : public Simulation {
   void update_multipliers();
   void project_velocities();
   void project_accelerations();
+  /// x (v or a) += the solution of the projection that is formed.
+  void solve_projection(Vector& x);
 
   StepSettings settings_;
   Mechanism mechanism_;

@@ -1,14 +1,8 @@
 // Constraints act with -Phi_q^T lambda; what that does to a direction is -lambda dPhi/d(direction).
 #include "run/constraint_force.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
-#include <vector>
-
-#include "model_math/kinematics.hpp"
 
 namespace mbs {
 namespace {
@@ -118,25 +112,6 @@ Vector3 constraint_vector(const Scene& scene, const SceneMotion& motion, const S
     if (by_first) result = result - lambda * *by_first;
   }
   return result;
-}
-
-double rounding_of_penalty_forces(const Model& model, double penalty, const State& state) {
-  std::vector<double> gradient(state.lambda.size(), 0.0);
-  for (const JacobianEntry& entry : jacobian(model, state.t, state.q)) {
-    double& largest = gradient[static_cast<std::size_t>(entry.row)];
-    largest = std::max(largest, std::abs(entry.value));
-  }
-  std::vector<double> applied(state.q.size());
-  applied_force(model, state.t, state.q, state.v, applied);
-  double coordinate = 0.0, rounding = 0.0, force = 0.0;
-  for (const double q : state.q) coordinate = std::max(coordinate, std::abs(q));
-  for (const double load : applied) force = std::max(force, std::abs(load));
-  for (std::size_t k = 0; k < gradient.size(); ++k) {
-    rounding = std::max(rounding, penalty * gradient[k] * gradient[k] * coordinate *
-                                      std::numeric_limits<double>::epsilon());
-    force = std::max(force, gradient[k] * std::abs(state.lambda[k]));
-  }
-  return force == 0.0 ? 0.0 : rounding / force;
 }
 
 }  // namespace mbs

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "printable.hpp"
-#include "run/constraint_force.hpp"
 #include "run/rounding.hpp"
 #include "usage_error.hpp"
 
@@ -269,7 +268,14 @@ void JudgedRun::conclude() {
   if (adds_local_errors_) {
     add(rounding_degradation(*access_.model, settings_.step, steps_, judge_.length()));
   }
-  add(drowned_forces());
+  const auto is_force = [](const Output& output) {
+    return output.kind == Output::Kind::constraint_force;
+  };
+  if (std::ranges::any_of(scene_.elements.outputs, is_force)) {
+    State state;
+    access_.get_state(state);
+    add(drowned_forces(*access_.model, settings_.step, state));
+  }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
   } else if (half_ && !watch_.passage().empty()) {
@@ -281,25 +287,6 @@ void JudgedRun::conclude() {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";
   }
-}
-
-/// Of forces that the scene asks for.
-std::string JudgedRun::drowned_forces() const {
-  const auto is_force = [](const Output& output) {
-    return output.kind == Output::Kind::constraint_force;
-  };
-  if (settings_.step.scheme != Scheme::penalty ||
-      settings_.step.precision == Precision::single_precision ||
-      std::ranges::none_of(scene_.elements.outputs, is_force)) {
-    return "";
-  }
-  State state;
-  access_.get_state(state);
-  constexpr double kAllowed = 0.1;
-  const double share = rounding_of_penalty_forces(*access_.model, settings_.step.penalty, state);
-  if (share <= kAllowed) return "";
-  return fmt::format("rounding may be {:.0f} % of the constraint forces: --scheme saddle-point",
-                     100 * share);
 }
 
 std::string JudgedRun::beyond_estimates() const {

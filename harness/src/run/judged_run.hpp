@@ -78,7 +78,6 @@ class JudgedRun {
   void balance_energy();
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
-  [[nodiscard]] std::string drowned_forces() const;
 
   const Scene& scene_;
   RunSettings settings_;
