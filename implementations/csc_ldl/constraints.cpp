@@ -6,8 +6,7 @@
 namespace mbs::csc_ldl {
 
 Constraints::Constraints(const Model& model, const Coordinates& at)
-    : dimension_(model.dimension()),
-      are_driven_(!model.driven_points().empty() || !model.driven_values().empty()) {
+    : dimension_(model.dimension()) {
   const std::span<const DotConstraint> dots = model.dot_constraints();
   const std::span<const BilinearConstraint> bilinear = model.bilinear_constraints();
   const int all_dots = static_cast<int>(dots.size());
@@ -67,7 +66,7 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
   }
   force_parts_ += static_cast<int>(linear_variable_.size());
 
-  for (std::vector<double>* each : {&Phi, &value_rate_, &value_acceleration_, &row_}) {
+  for (std::vector<double>* each : {&Phi, &value_rate_, &value_acceleration_}) {
     each->resize(count());
   }
   for (const DrivenValue& driven : model.driven_values()) {
@@ -180,30 +179,23 @@ void Constraints::evaluate_dots(const double* q) {
   }
 }
 
+void Constraints::rate(const double* v, double* result) const {
+  multiply(v, result);
+  for (const DrivenRow& driven : driven_) result[driven.row] -= value_rate_[driven.row];
+}
+
+void Constraints::second_rate(const double* v, const double* a, double* result) const {
+  multiply(a, result);
+  dimension_ == 2 ? add_squares<2>(v, result) : add_squares<3>(v, result);
+  for (const DrivenRow& driven : driven_) result[driven.row] -= value_acceleration_[driven.row];
+}
+
 void Constraints::multiply(const double* x, double* product) const {
   for (const auto& [group, first] : groups_) group->contract(x, product + first);
   for (int row = first_linear_, t = 0; row < count(); ++row) {
     product[row] = 0.0;
     for (; t < linear_begin_[row - first_linear_ + 1]; ++t) {
       product[row] += linear_coefficient_[t] * x[linear_variable_[t]];
-    }
-  }
-}
-
-void Constraints::write_reactions(double factor, const double* x1, const double* x2,
-                                  double* parts) const {
-  for (const auto& [group, first] : groups_) group->write_reactions(factor, x1, x2, parts);
-  double* part = parts + 2 * first_linear_part_;
-  for (std::size_t row = 1, t = 0; row < linear_begin_.size(); ++row) {
-    const std::size_t end = linear_begin_[row];
-    double sum1 = 0.0, sum2 = 0.0;
-    for (std::size_t s = t; s < end; ++s) {
-      sum1 += factor * linear_coefficient_[s] * x1[linear_variable_[s]];
-      sum2 += factor * linear_coefficient_[s] * x2[linear_variable_[s]];
-    }
-    for (; t < end; ++t) {
-      part[2 * t] = sum1 * linear_coefficient_[t];
-      part[2 * t + 1] = sum2 * linear_coefficient_[t];
     }
   }
 }
@@ -226,16 +218,6 @@ void Constraints::write_products(double factor, double* parts) const {
   }
 }
 
-void Constraints::time_derivative(const double* driven_v, double* Phi_t) const {
-  std::fill_n(Phi_t + first_linear_, count() - first_linear_, 0.0);
-  for (const auto& [group, first] : groups_) group->contract(driven_v, Phi_t + first);
-  for (const DrivenRow& driven : driven_) Phi_t[driven.row] -= value_rate_[driven.row];
-}
-
-void Constraints::curvature(const double* v, double* result) const {
-  dimension_ == 2 ? add_squares<2>(v, result) : add_squares<3>(v, result);
-}
-
 template <int dimension>
 void Constraints::add_squares(const double* v, double* __restrict result) const {
   for (int k = 0; k < distances_.count; ++k) {
@@ -244,14 +226,14 @@ void Constraints::add_squares(const double* v, double* __restrict result) const 
       const double u = distances_.difference(v, c, k);
       sum += u * u;
     }
-    result[k] = 2 * sum;
+    result[k] += 2 * sum;
   }
   for (int k = 0; k < dots_.count; ++k) {
     double sum = 0.0;
     for (int c = 0; c < dimension; ++c) {
       sum += dots_.difference(v, c, k) * dots_.difference(v, dimension + c, k);
     }
-    result[distances_.count + k] = 2 * sum;
+    result[distances_.count + k] += 2 * sum;
   }
   for (int k = 0; k < bilinear_.count; ++k) {
     double sum = 0.0;
@@ -261,17 +243,8 @@ void Constraints::add_squares(const double* v, double* __restrict result) const 
                bilinear_.difference(v, dimension + c, k);
       }
     }
-    result[distances_.count + dots_.count + k] = 2 * sum;
+    result[distances_.count + dots_.count + k] += 2 * sum;
   }
-  std::fill_n(result + first_linear_, count() - first_linear_, 0.0);
-}
-
-void Constraints::add_driven_curvature(const double* driven_a, double* result) const {
-  for (const auto& [group, first] : groups_) {
-    group->contract(driven_a, row_.data());
-    for (int k = 0; k < group->count; ++k) result[first + k] += row_[k];
-  }
-  for (const DrivenRow& driven : driven_) result[driven.row] -= value_acceleration_[driven.row];
 }
 
 }  // namespace mbs::csc_ldl

@@ -18,7 +18,6 @@ class Constraints {
   [[nodiscard]] int count() const { return static_cast<int>(model_row_.size()); }
   /// The model's number of a row.
   [[nodiscard]] const std::vector<int>& model_row() const { return model_row_; }
-  [[nodiscard]] bool are_driven() const { return are_driven_; }
 
   // For setup: what an entry sums up, among the parts that the two functions below write.
   using Visit = std::function<void(int, int, int)>;
@@ -34,24 +33,20 @@ class Constraints {
   /// Values that drivers prescribe, at time t.
   void drive(double t);
   void evaluate(const double* q);
-  /// Phi_q x; x is zero at fixed points.
-  void multiply(const double* x, double* product) const;
-  /// factor Phi_q^T Phi_q x for two x, in pairs of parts; x is zero at fixed points.
-  void write_reactions(double factor, const double* x1, const double* x2, double* parts) const;
+  /// The first and the second derivative of Phi by time; v and a are those of all points. With the
+  /// Phi_q of the last evaluate().
+  void rate(const double* v, double* result) const;
+  void second_rate(const double* v, const double* a, double* result) const;
   /// Phi_q^T g, in parts.
   void write_forces(const double* g, double* parts) const;
   /// factor Phi_q^T Phi_q of all rows but linear ones, in parts.
   void write_products(double factor, double* parts) const;
-  /// Phi_t, from velocities that are zero but at driven points.
-  void time_derivative(const double* driven_v, double* Phi_t) const;
-  /// The part of the second derivative of Phi that is free of a: from velocities of all points.
-  void curvature(const double* v, double* result) const;
-  /// Adds what accelerations of driven points give to it.
-  void add_driven_curvature(const double* driven_a, double* result) const;
 
   std::vector<double> Phi;
 
  private:
+  /// Phi_q x, with what driven points have in x.
+  void multiply(const double* x, double* product) const;
   template <int dimension>
   void evaluate_dots(const double* q);
   template <int dimension>
@@ -62,7 +57,6 @@ class Constraints {
     TimeFunction value;
   };
   int dimension_;
-  bool are_driven_;
   Group distances_, dots_, bilinear_;
   struct Rows {
     const Group* group;
@@ -76,7 +70,6 @@ class Constraints {
   std::vector<int> model_row_;
   std::vector<double> value_, value_rate_, value_acceleration_;
   std::vector<DrivenRow> driven_;
-  mutable std::vector<double> row_;  // of add_driven_curvature()
 };
 
 }  // namespace mbs::csc_ldl

@@ -110,33 +110,6 @@ struct Group {
       }
     });
   }
-  /// factor times gradient_k . x times the gradient, in parts of forces; for two x, in pairs.
-  void write_reactions(double factor, const double* x1, const double* x2, double* parts) const {
-    with_components([=, this](auto components) {
-      const int n = count;
-      const double* all = gradient.data();
-      const int *from = plus.data(), *to = minus.data();
-      double* part = parts + 2 * first_force;
-      for (int k = 0; k < n; ++k) {
-        double g[components], sum1 = 0.0, sum2 = 0.0;
-        for (int c = 0; c < components; ++c) {
-          g[c] = all[c * n + k];
-          sum1 += g[c] * (x1[from[c * n + k]] - x1[to[c * n + k]]);
-          sum2 += g[c] * (x2[from[c * n + k]] - x2[to[c * n + k]]);
-        }
-        sum1 *= factor;
-        sum2 *= factor;
-        for (int c = 0; c < components; ++c) {
-          double* positive = part + 2 * (2 * c * n + k);
-          double* negative = positive + 2 * n;
-          positive[0] = sum1 * g[c];
-          positive[1] = sum2 * g[c];
-          negative[0] = -positive[0];
-          negative[1] = -positive[1];
-        }
-      }
-    });
-  }
   /// factor(k) gradient gradient^T.
   template <class Factor>
   void write_products(Factor factor, double* parts) const {

@@ -27,7 +27,6 @@ LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings, O
       assembly_(model, settings, numbering_, constraints_, elements_),
       row_parts_(constraints_.force_parts()),
       element_parts_(elements_.force_parts()),
-      pairs_(2 * row_parts_.size()),
       are_driven_(!model.driven_points().empty() || !model.driven_values().empty() ||
                   has_factors_of_time(model)) {
   for (int i = 0; i < n_; ++i) minus_Q_[numbering_.state[i]] = -model.force()[i];
@@ -42,7 +41,7 @@ LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings, O
   row_forces_.finish();
   element_forces_.finish();
   if (are_driven_) {
-    driven_v_ = driven_a_ = all_v_ = Vector(at_.total);
+    all_v_ = all_a_ = Vector(at_.total);
     force_ = minus_Q_;
   }
 }
@@ -79,16 +78,15 @@ StepOutcome LdlSimulation::do_step() {
     evaluate_residual();
     assemble();
     if (!factorize()) return {StepStatus::factorization_failed, outcome.passes};
-    solve(top_);  // Eq. (4) or (12)
+    solve();  // Eq. (4) or (12)
     if (correct()) outcome.status = StepStatus::converged;
     const bool is_last =
         outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
-    if (is_last && settings_.projections != Projections::none) prepare_projections();
-    evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
-    update_multipliers();
+    if (saddle_point_) update_multipliers(bottom_, 4 / (dt_ * dt_));  // what came with Eq. (12)
+    if (is_last && settings_.projections != Projections::none) project();
+    evaluate_constraints();  // at the new q': for lambda and the next pass
+    if (!saddle_point_) update_multipliers(constraints_.Phi, alpha_);  // Eq. (1)
   }
-  // A step that stops at the pass limit is projected like any other.
-  if (settings_.projections != Projections::none) project();
   return outcome;
 }
 
@@ -132,14 +130,13 @@ void LdlSimulation::drive() {
       const TimeFunction::Sample r = driven.position[axis].at(t);
       const int place = at_(driven.point, axis);
       q_[place] = r.value;
-      driven_v_[place] = r.rate;
-      driven_a_[place] = r.acceleration;
+      all_v_[place] = r.rate;
+      all_a_[place] = r.acceleration;
     }
   }
   minus_Q_ = force_;
   for (const DrivenMass& mass : model_.driven_mass()) {
-    minus_Q_[numbering_.state[mass.coordinate]] +=
-        mass.value * driven_a_[at_(mass.point, mass.axis)];
+    minus_Q_[numbering_.state[mass.coordinate]] += mass.value * all_a_[at_(mass.point, mass.axis)];
   }
 }
 
@@ -173,7 +170,7 @@ void LdlSimulation::evaluate_residual() {
   mass_.multiply(a_.data(), top_.data());
   row_forces_.apply(top_.data(), row_parts_.data(), top_.data());
   if (!elements_.empty()) {
-    elements_.evaluate(q_.data(), velocities_of_all_points(), element_parts_.data(),
+    elements_.evaluate(q_.data(), of_all_points(v_, all_v_), element_parts_.data(),
                        assembly_.element_parts());
     element_forces_.apply(top_.data(), element_parts_.data(), top_.data());
   }
@@ -193,9 +190,9 @@ bool LdlSimulation::factorize() {
   return assembly_.factorize();
 }
 
-void LdlSimulation::solve(Vector& top) {
+void LdlSimulation::solve() {
   phases_.enter(Phase::solve);
-  assembly_.solve(top, bottom_);
+  assembly_.solve(top_, bottom_);
 }
 
 // Adds Delta q; v' and a' follow by Eq. (2). True if Newton has converged, which NaN has not.
@@ -215,61 +212,42 @@ bool LdlSimulation::correct() {
   return larger == 0;
 }
 
-// Eq. (1) or, in saddle-point form, what comes with Eq. (12); converged or not.
-void LdlSimulation::update_multipliers() {
+// Converged or not.
+void LdlSimulation::update_multipliers(const Vector& change, double factor) {
   phases_.enter(Phase::other);
-  const double factor = saddle_point_ ? 4 / (dt_ * dt_) : alpha_;
-  const Vector& change = saddle_point_ ? bottom_ : constraints_.Phi;
   for (int k = 0; k < m_; ++k) lambda_[k] += factor * change[k];
 }
 
-const double* LdlSimulation::velocities_of_all_points() {
-  if (!are_driven_) return v_.data();
-  for (int i = 0; i < n_; ++i) all_v_[i] = v_[i];
-  for (int i = n_; i < at_.total; ++i) all_v_[i] = driven_v_[i];
-  return all_v_.data();
+// v_ or a_; `all` has what driven points have of it, at their places.
+const double* LdlSimulation::of_all_points(const Vector& x, Vector& all) {
+  if (!are_driven_) return x.data();
+  for (int i = 0; i < n_; ++i) all[i] = x[i];
+  return all.data();
 }
 
-// What v* and a* have on the right of Eq. (6) or (13), which are solved for what they change. Phi_q
-// is still the one in T.
-void LdlSimulation::prepare_projections() {
-  phases_.enter(Phase::projection);
-  std::ranges::fill(top_v_, 0.0);
-  std::ranges::fill(top_a_, 0.0);
-  if (saddle_point_) {
-    constraints_.multiply(v_.data(), rate_v_.data());
-    constraints_.multiply(a_.data(), rate_a_.data());
-  } else {
-    constraints_.write_reactions(-dt_ * dt_ / 4 * alpha_, v_.data(), a_.data(), pairs_.data());
-    row_forces_.apply_pairs(pairs_.data(), top_v_.data(), top_a_.data());
-  }
-}
-
-// Eq. (6) or (13), with the last pass's factors.
+// Eq. (6) or (13), with the last pass's factors and Phi_q, solved for what it changes.
 void LdlSimulation::project() {
   phases_.enter(Phase::projection);
-  if (constraints_.are_driven()) constraints_.time_derivative(driven_v_.data(), rate_.data());
-  project(v_, top_v_, rate_v_, constraints_.are_driven());
+  constraints_.rate(of_all_points(v_, all_v_), g_.data());
+  project(v_);
   if (settings_.projections == Projections::velocity) return;
-  constraints_.curvature(velocities_of_all_points(), rate_.data());
-  if (constraints_.are_driven()) constraints_.add_driven_curvature(driven_a_.data(), rate_.data());
-  project(a_, top_a_, rate_a_, true);
+  constraints_.second_rate(of_all_points(v_, all_v_), of_all_points(a_, all_a_), g_.data());
+  project(a_);
 }
 
-// x += what the projection changes; rate_, if it has one, is Phi_t or the part of Phi's second
-// derivative that is free of a.
-void LdlSimulation::project(Vector& x, Vector& top, const Vector& rate, bool has_rate) {
+// x + what the projection changes, g_ being the rate of Phi with x = v*, or its second one with a*.
+void LdlSimulation::project(Vector& x) {
+  std::ranges::fill(top_, 0.0);
   if (saddle_point_) {
-    for (int k = 0; k < m_; ++k) bottom_[k] = -rate[k] - (has_rate ? rate_[k] : 0.0);
-  } else if (has_rate) {
-    const double factor = -dt_ * dt_ / 4 * alpha_;
-    for (int k = 0; k < m_; ++k) g_[k] = factor * rate_[k];
+    for (int k = 0; k < m_; ++k) bottom_[k] = -g_[k];
+  } else {
+    for (int k = 0; k < m_; ++k) g_[k] *= -dt_ * dt_ / 4 * alpha_;
     constraints_.write_forces(g_.data(), row_parts_.data());
-    row_forces_.apply(top.data(), row_parts_.data(), top.data());
+    row_forces_.apply(top_.data(), row_parts_.data(), top_.data());
   }
-  solve(top);
+  solve();
   phases_.enter(Phase::projection);
-  for (int i = 0; i < n_; ++i) x[i] += top[i];
+  for (int i = 0; i < n_; ++i) x[i] += top_[i];
 }
 
 }  // namespace mbs::csc_ldl

@@ -31,14 +31,13 @@ class LdlSimulation final : public Simulation {
   void evaluate_residual();
   void assemble();
   [[nodiscard]] bool factorize();
-  void solve(Vector& top);
+  void solve();
   [[nodiscard]] bool correct();
-  void prepare_projections();
-  void update_multipliers();
   void project();
+  void update_multipliers(const Vector& change, double factor);
 
-  [[nodiscard]] const double* velocities_of_all_points();
-  void project(Vector& x, Vector& top, const Vector& rate, bool has_rate);
+  [[nodiscard]] const double* of_all_points(const Vector& x, Vector& all);
+  void project(Vector& x);
 
   const Model& model_;
   const StepSettings settings_;
@@ -57,16 +56,13 @@ class LdlSimulation final : public Simulation {
   Vector q_ = Vector(at_.total), v_ = q_, a_ = q_, lambda_ = Vector(m_);
   Vector minus_Q_ = Vector(n_);       // its part that is no element's
   Vector row_parts_, element_parts_;  // of forces
-  Vector pairs_;                      // the first, for two vectors (penalty form)
   Sums row_forces_, element_forces_;  // by variable
-  Vector top_ = Vector(n_), top_v_ = top_, top_a_ = top_;  // right-hand sides, then solutions
-  Vector bottom_ = Vector(m_);                             // of rows, saddle-point form
-  Vector g_ = Vector(m_);                                  // what Phi_q^T is multiplied with
-  // In the projections: Phi_q v*, Phi_q a* (saddle-point form), and what is added to them.
-  Vector rate_v_ = Vector(m_), rate_a_ = rate_v_, rate_ = rate_v_;
-  const bool are_driven_;               // points, values, masses or factors
-  Vector driven_v_, driven_a_, all_v_;  // with at_.total entries, if driven
-  Vector force_;                        // the model's, in the state's order
+  Vector top_ = Vector(n_);           // a right-hand side, then its solution
+  Vector bottom_ = Vector(m_);        // of rows, saddle-point form
+  Vector g_ = Vector(m_);             // what Phi_q^T is multiplied with
+  const bool are_driven_;             // points, values, masses or factors
+  Vector all_v_, all_a_;              // with driven points' behind the n variables, if driven
+  Vector force_;                      // the model's, in the state's order
 };
 
 }  // namespace mbs::csc_ldl

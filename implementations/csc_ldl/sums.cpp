@@ -36,21 +36,4 @@ void Sums::apply(const double* from, const double* part, double* to) const {
   }
 }
 
-void Sums::apply_pairs(const double* part, double* to1, double* to2) const {
-  const int* index = index_.data();
-  for (const Run& run : runs_) {
-    with_constant(run.parts, [&](auto parts) {
-      for (int target = 0; target < run.targets; ++target, index += parts + 1) {
-        double sum1 = 0.0, sum2 = 0.0;
-        for (int k = 1; k <= parts; ++k) {
-          sum1 += part[2 * index[k]];
-          sum2 += part[2 * index[k] + 1];
-        }
-        to1[index[0]] = sum1;
-        to2[index[0]] = sum2;
-      }
-    });
-  }
-}
-
 }  // namespace mbs::csc_ldl

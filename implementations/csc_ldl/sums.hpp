@@ -46,8 +46,6 @@ class Sums {
   [[nodiscard]] bool empty() const { return runs_.empty(); }
   /// `from` and `to` may be the same.
   void apply(const double* from, const double* part, double* to) const;
-  /// The same from zero for two vectors, whose parts lie in pairs, reading the lists once.
-  void apply_pairs(const double* part, double* to1, double* to2) const;
 
  private:
   struct Run {

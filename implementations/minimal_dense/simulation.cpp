@@ -26,13 +26,13 @@ StepOutcome LoopsSimulation::do_step() {
     if (!factorize_tangent()) return {StepStatus::factorization_failed, outcome.passes};
     solve(Delta_q_);  // Eq. (4)
     if (correct()) outcome.status = StepStatus::converged;
-    J_ = Phi_q_;             // the one in T: if this is the last pass, the projections need it
-    evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
+    const bool is_last =  // one that stops at the pass limit is projected like any other
+        outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (is_last && settings_.projections != Projections::none) project();
+    evaluate_constraints();  // at the new q': for lambda and the next pass
     phases_.enter(Phase::other);
     for (long k = 0; k < m_; ++k) lambda_[k] += alpha_ * Phi_[k];  // Eq. (1), converged or not
   }
-  // A step that stops at the pass limit is projected like any other.
-  if (settings_.projections != Projections::none) project();
   return outcome;
 }
 
@@ -142,7 +142,7 @@ bool LoopsSimulation::correct() {
   return converged;
 }
 
-// Eq. (6), with the last pass's L and J, solved for what it changes.
+// Eq. (6), with the last pass's L and Phi_q, solved for what it changes.
 void LoopsSimulation::project() {
   std::ranges::fill(rate_, 0.0);  // Phi_t: nothing is driven
   project(v_);
@@ -161,18 +161,15 @@ void LoopsSimulation::project() {
   project(a_);
 }
 
-// T change = -(dt^2/4) alpha (J^T J x + Phi_q^T rate), x += change; x is v* or a*.
+// T change = -(dt^2/4) alpha Phi_q^T (Phi_q x + rate), x += change; x is v* or a*.
 void LoopsSimulation::project(Vector& x) {
   phases_.enter(Phase::projection);
   for (long k = 0; k < m_; ++k) {
-    J_x_[k] = 0.0;
-    for (long j = 0; j < n_; ++j) J_x_[k] += J_[k * n_ + j] * x[j];
+    for (long j = 0; j < n_; ++j) rate_[k] += Phi_q_[k * n_ + j] * x[j];
   }
   for (long i = 0; i < n_; ++i) {
     double sum = 0.0;
-    for (long k = 0; k < m_; ++k) {
-      sum += J_[k * n_ + i] * J_x_[k] + Phi_q_[k * n_ + i] * rate_[k];
-    }
+    for (long k = 0; k < m_; ++k) sum += Phi_q_[k * n_ + i] * rate_[k];
     change_[i] = -dt_ * dt_ / 4 * alpha_ * sum;
   }
   solve(change_);

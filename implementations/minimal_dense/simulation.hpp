@@ -42,8 +42,7 @@ class LoopsSimulation final : public Simulation {
   Vector M_ = Vector(n_ * n_);                        // both halves
   const std::span<const double> Q_ = model_.force();  // constant, as gravity is all there is
   Vector Phi_ = Vector(m_), Phi_q_ = Vector(m_ * n_);
-  Vector J_ = Vector(m_ * n_), J_x_ = Vector(m_);     // Phi_q in T; times v* or a*
-  Vector rate_ = Vector(m_);                          // Phi_t, or Phi_dot_q v': Eq. (6)
+  Vector rate_ = Vector(m_);                          // of Phi or of its rate: Eq. (6)
   Vector T_ = Vector(n_ * n_), L_ = Vector(n_ * n_);  // lower halves; T = L L^T
   Vector Delta_q_ = Vector(n_);                       // -f, then the solution of Eq. (4)
   Vector change_ = Vector(n_);                        // of v' or a', Eq. (6)

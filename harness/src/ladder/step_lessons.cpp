@@ -58,7 +58,8 @@ const std::vector<StepRung>& step_rungs() {
        "Eq. (6)",
        Look::velocity,
        {"a step that ends at the pass limit is not projected; it has to be",
-        "J^T J v* takes Phi_q at the final q'; or a product with T_0 lacks C and K",
+        "Phi_q is that of the final q': it has to be that of the last pass, which is in T; or a "
+        "product with T_0 lacks C and K",
         "the right-hand side lacks Phi_t of drivers",
         "T was factorized anew, or q', a' or lambda is changed: Eq. (6) takes the last pass's "
         "factors and changes v' alone"}},
@@ -67,7 +68,7 @@ const std::vector<StepRung>& step_rungs() {
        Look::both,
        {"the projection of a leaves out (dPhi_q/dt) v', or takes the v' from before its own "
         "projection",
-        "beside (dPhi_q/dt) v', Phi_q is that of the last pass: it is needed at the final q'",
+        "Phi_q is that of the final q': it has to be that of the last pass, which is in T",
         "it is scaled by dt^2/4 without alpha"}},
   };
   return rungs;

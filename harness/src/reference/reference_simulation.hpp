@@ -121,8 +121,12 @@ class ReferenceSimulation final : public Simulation {
 
   StepOutcome trapezoidal_step();
   void predict();
+  struct Pass {
+    Vector q;               // before its correction
+    std::vector<Row> rows;  // Phi_q there
+  };
   /// Projections of the step; adds to `factorizations`. False if a factorization failed.
-  [[nodiscard]] bool project(int& factorizations);
+  [[nodiscard]] bool project(const Pass& last, int& factorizations);
   [[nodiscard]] bool refines_once() const;
   /// Eq. (15): x from x* on, until a correction is at most `small`.
   [[nodiscard]] bool refine(const std::vector<Row>& rows, Vector& x, const Vector& rate, Real small,

@@ -1,6 +1,7 @@
 // The trapezoidal rule of the reference, in penalty and in saddle-point form.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "reference/reference_simulation.hpp"
 
@@ -85,10 +86,12 @@ StepOutcome ReferenceSimulation::trapezoidal_step() {
   predict();
   Real last = 0;         // max |Delta q| of the pass before
   bool updated = false;  // lambda was, after the pass before, as Newton had converged
+  Pass pass;             // the last one
   while (outcome.passes < settings_.max_passes && outcome.status != StepStatus::converged) {
     ++outcome.passes;
     const Vector phi = constraints();
-    const std::vector<Row> rows = jacobian();
+    pass = {q_, jacobian()};
+    const std::vector<Row>& rows = pass.rows;
     const bool wanted = settings_.tangent == TangentReuse::none ||
                         (settings_.tangent == TangentReuse::step && outcome.passes == 1) ||
                         (settings_.tangent == TangentReuse::kept && due_);
@@ -121,24 +124,26 @@ StepOutcome ReferenceSimulation::trapezoidal_step() {
     }
     updated = small;
   }
-  if (!project(outcome.factorizations)) outcome.status = StepStatus::factorization_failed;
+  if (!project(pass, outcome.factorizations)) outcome.status = StepStatus::factorization_failed;
   if (outcome.status == StepStatus::pass_limit) due_ = true;
   return outcome;
 }
 
-bool ReferenceSimulation::project(int& factorizations) {
+bool ReferenceSimulation::project(const Pass& last, int& factorizations) {
   if (settings_.projections == Projections::none) return true;
   if (steps_ % settings_.projections_every != 0) return true;
   const Real h = settings_.step, tolerance = settings_.tolerance;
   const bool both = settings_.projections == Projections::both;
-  const std::vector<Row> rows = jacobian();
   if (settings_.tangent != TangentReuse::none || settings_.precision == Precision::mixed ||
       refines_once()) {
+    const std::vector<Row> rows = jacobian();
     if (!refine(rows, v_, partial_rate(), 2 / h * tolerance, factorizations)) return false;
     return !both || refine(rows, a_, curvature(), 4 / (h * h) * tolerance, factorizations);
   }
-  v_ = solve(rows, weighted_mass_times(v_), negative(partial_rate())).x;  // Eqs. (6), (13)
-  if (both) a_ = solve(rows, weighted_mass_times(a_), negative(curvature())).x;
+  const Vector final_q = std::exchange(q_, last.q);
+  v_ = solve(last.rows, weighted_mass_times(v_), negative(partial_rate())).x;  // Eqs. (6), (13)
+  if (both) a_ = solve(last.rows, weighted_mass_times(a_), negative(curvature())).x;
+  q_ = final_q;
   return true;
 }
 

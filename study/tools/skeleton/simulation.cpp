@@ -35,10 +35,9 @@ StepOutcome Stepper::do_step() {
   // TODO: predict(), Phi and Phi_q; then passes, settings_.max_passes at most:
   //   residual, tangent, factorize() (false: StepStatus::factorization_failed, at once), solve()
   //   with -f, correct(), Phi and Phi_q anew, lambda += alpha Phi, Eq. (1).
-  // The pass with max |Delta q| <= settings_.tolerance is the last; it does all of that too. The
-  // Phi_q of the last pass, at the limit too, is the J of the projections: take J^T J v' and
-  // J^T J a' after its correct(), before Phi_q is evaluated anew.
-  // Then project() what settings_.projections says: nothing, v', or v' and a'.
+  // The pass with max |Delta q| <= settings_.tolerance is the last; it does all of that too. After
+  // the correct() of the last pass, at the limit too, project() what settings_.projections says:
+  // nothing, v', or v' and a'. Phi_q is not evaluated anew before that: it has to be the one in T.
   // phases_.enter(Phase::solve);  // optional, for mbs bench --phases: what follows is this
   return {StepStatus::pass_limit, 1};
 }
