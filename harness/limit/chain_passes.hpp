@@ -126,8 +126,9 @@ void Chain<V>::pass() {
 /// Eq. (2), from 2 s Delta q; that of v follows later, see Block::wx.
 template <class V>
 MBS_LIMIT_INLINE void change_by(Block<V>& block, const Planar<V>& change, const V& half) {
-  store(block.x, fnma(half, change.x, load(block.x)));
-  store(block.y, fnma(half, change.y, load(block.y)));
+  const V x = load(block.x), y = load(block.y);
+  store(block.px, x), store(block.py, y);
+  store(block.x, fnma(half, change.x, x)), store(block.y, fnma(half, change.y, y));
   store(block.ux, load(block.ux) - change.x), store(block.uy, load(block.uy) - change.y);
 }
 

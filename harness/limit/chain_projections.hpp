@@ -42,7 +42,7 @@ struct VelocitySide {
   }
 };
 
-/// M u* less what the velocities make of the constraints.
+/// M u* less what the velocities make of the constraints, along the rods of the last pass.
 template <class V>
 struct AccelerationSide {
   V x, y, wx, wy, ux, uy, from_x, from_y;
@@ -52,7 +52,7 @@ struct AccelerationSide {
       : offset(constants.offset), half(constants.half) {}
 
   MBS_LIMIT_INLINE void take(const Block<V>& block) {
-    x = load(block.x), y = load(block.y);
+    x = load(block.px), y = load(block.py);
     wx = load(block.wx), wy = load(block.wy);
     ux = load(block.ux), uy = load(block.uy);
   }

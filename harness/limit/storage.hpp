@@ -14,6 +14,7 @@ struct Planar {
 template <class V>
 struct Block {
   V x, y;     ///< s (B - A)
+  V px, py;   ///< that of the last pass, before its correction
   V ux, uy;   ///< s dt^2/2 a
   V wx, wy;   ///< s dt v between steps; within one, that plus u of the step before
   V rod;      ///< 6 dt^2 lambda of the rod from A to B
