@@ -13,7 +13,6 @@
 #include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
-#include "run/rounding.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
@@ -228,31 +227,6 @@ TEST(BranchWatch, DoesNotTakeTheOtherAssemblyForTheSameWhereTheyAreClose) {
     const std::string found = watch.look(0.6, place(kChange + 0.3, side));
     EXPECT_EQ(found.empty(), side > 0.0) << found;
   }
-}
-
-TEST(Rounding, ShakesLightPartsInThePenaltyForm) {
-  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
-  StepSettings settings;
-  settings.step = 1e-3;
-  settings.penalty = automatic_penalty(scene.model, settings);
-  EXPECT_EQ(rounding_degradation(scene.model, settings, 10'000, 1.0), "");
-  ModelData light = scene.model.data();
-  for (MassEntry& entry : light.mass) entry.value *= 1e-8;
-  const Model model(std::move(light));
-  EXPECT_NE(rounding_degradation(model, settings, 10'000, 1.0).find("saddle-point"),
-            std::string::npos);
-  ModelData times_four = model.data();  // so that alpha counts sixteen times
-  for (const DotConstraint& c : times_four.dot_constraints) {
-    times_four.bilinear_constraints.push_back(
-        {c.a, c.b, c.c, c.d, {{{4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 4 * c.value, c.name});
-  }
-  times_four.dot_constraints.clear();
-  StepSettings softer = settings;
-  softer.penalty /= 16;
-  EXPECT_EQ(rounding_degradation(Model(std::move(times_four)), softer, 10'000, 1.0),
-            rounding_degradation(model, settings, 10'000, 1.0));
-  settings.scheme = Scheme::saddle_point;
-  EXPECT_EQ(rounding_degradation(model, settings, 10'000, 1.0), "");
 }
 
 }  // namespace

@@ -103,17 +103,6 @@ TEST(Describe, FourBar) {
   EXPECT_TRUE(d["artificial_fill"].is_null());
 }
 
-TEST(Describe, TakesTheSaddlePointFormWhereRoundingOfPenaltyForcesCounts) {
-  // A rod of a billionth of the other's mass hangs below it.
-  const char* text = R"({"gravity": [0, -9.81],
-    "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "B", "position": [1, 0]},
-               {"name": "C", "position": [2, 0]}],
-    "rods": [{"between": ["A", "B"], "mass": 1}, {"between": ["B", "C"], "mass": 1e-9}]})";
-  const auto d = describe_json(scene_of_text(text), kSettings);
-  EXPECT_EQ(d["scheme"]["take"], "saddle-point");
-  EXPECT_NE(d["warnings"].dump().find("may drive C"), std::string::npos) << d["warnings"].dump();
-}
-
 double counted_passes(const Scene& scene, Scheme scheme) {
   StepSettings settings = kSettings;
   settings.scheme = scheme;

@@ -21,7 +21,6 @@
 #include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
-#include "run/rounding.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"
 
@@ -90,14 +89,6 @@ json scheme_json(Scheme scheme, const std::string& reason) {
   return {{"take", name_of(scheme)}, {"reason", reason}};
 }
 
-/// Of a run of usual length.
-std::string rounding_warning(const Model& model, const StepSettings& settings) {
-  constexpr double kDuration = 10.0;  // s
-  const std::string found = rounding_degradation(
-      model, settings, std::lround(kDuration / settings.step), judged_length(model));
-  return found.empty() ? "" : fmt::format("in {:g} s {}", kDuration, found);
-}
-
 /// The window, and what is likely to go wrong with the automatic factor and this step.
 void add_settings(json& result, const Model& model, const Structure& structure, double smallest,
                   StepSettings settings) {
@@ -111,7 +102,6 @@ void add_settings(json& result, const Model& model, const Structure& structure, 
     const PenaltyWindow window = penalty_window(model, structure, smallest, settings);
     result["penalty_window"] = penalty_json(window, settings);
     warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
-    if (warnings.back().empty()) warnings.push_back(rounding_warning(model, settings));
     const bool is_open = warnings.back().empty();
     result["scheme"] = scheme_json(
         is_open ? Scheme::penalty : Scheme::saddle_point,

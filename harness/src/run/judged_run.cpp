@@ -204,7 +204,6 @@ void JudgedRun::add_local_errors() {
   }
   const double speed = local_errors_.add(off_, v, step, steps);
   judge_.add_time(static_cast<double>(steps) * step, speed);
-  fastest_ = std::max(fastest_, speed);
   add_speed_error();
 }
 
@@ -265,9 +264,6 @@ void JudgedRun::conclude() {
     summary_.reason += reason;
   };
   add(watch_.doubt());
-  if (adds_local_errors_) {
-    add(rounding_degradation(*access_.model, settings_.step, steps_, judge_.length()));
-  }
   const auto is_force = [](const Output& output) {
     return output.kind == Output::Kind::constraint_force;
   };

@@ -97,7 +97,6 @@ class JudgedRun {
   long judgements_ = 0, balanced_ = 0;   // balanced_: step
   std::optional<StepAgain> again_;       // of the trapezoidal forms
   long done_again_ = 0;                  // step
-  double fastest_ = 0.0;                 // m/s, of a point at a judged step
   LocalErrors local_errors_;
   std::vector<double> off_;  // n, m
   std::optional<HalfStepRun> half_;

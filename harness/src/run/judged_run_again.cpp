@@ -73,8 +73,7 @@ void JudgedRun::add_speed_error() {
   // Even if all steps left so much: the sum grows with the square of time.
   const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
                             (static_cast<double>(steps_) * time(steps_));
-  if (summary_.steps_at_limit == 0 &&
-      most_left(*access_.model, settings_.step, fastest_) < negligible) {
+  if (summary_.steps_at_limit == 0 && most_left(settings_.step) < negligible) {
     done_again_ = step;
     return;
   }

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "model_math/extent.hpp"
-#include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 
 namespace mbs {
@@ -25,23 +23,9 @@ StepSettings cleaned(const Model& model, StepSettings settings, double passes) {
 
 }  // namespace
 
-double most_left(const Model& model, const StepSettings& settings, double speed) {
-  if (settings.scheme != Scheme::penalty || settings.tangent != TangentReuse::none) return HUGE_VAL;
-  const double step = settings.step, tolerance = settings.tolerance;
-  double factor = 1.0;  // of rows
-  for (const BilinearConstraint& c : model.bilinear_constraints()) {
-    for (const auto& row : c.B) {
-      for (const double entry : row) factor = std::max(factor, std::abs(entry));
-    }
-  }
-  // A distance has 2 u in Phi_q, which a correction of both ends changes by four tolerances; of a
-  // row (Phi_q)' v is at most 2 (2 speed)^2 and Phi_t 2 speed times a length.
-  const double turned = 4 * tolerance * factor;
-  const bool is_driven = !model.driven_points().empty() || !model.driven_values().empty();
-  const double rate = is_driven ? 2 * speed * extent(model.points()) : 0.0;
-  const double wrong = factor * (rate + step / 2 * 8 * speed * speed);
-  const double beta = settings.penalty * step * step / 4;
-  return 2 / step * tolerance + beta * turned * wrong / std::ranges::min(mass_diagonal(model));
+double most_left(const StepSettings& settings) {
+  if (settings.tangent != TangentReuse::none) return HUGE_VAL;
+  return 4 / settings.step * settings.tolerance;  // Eq. (2), of v + dt/2 a
 }
 
 StepAgain::StepAgain(const Create& create, const Model& model, const StepSettings& settings,

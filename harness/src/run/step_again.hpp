@@ -45,10 +45,8 @@ class StepAgain {
   SpeedError error_;
 };
 
-/// The largest velocity, m/s, that a step of the penalty form can leave whose passes ended at the
-/// tolerance, each with a tangent of its own, where the fastest point moves at `speed`, m/s: what
-/// (2) makes of the tolerance, and what (6) does to the lightest coordinate, since the tangent is
-/// one correction older. Infinite for other settings.
-double most_left(const Model& model, const StepSettings& settings, double speed);
+/// The largest velocity, m/s, that a step of a trapezoidal form can leave whose passes ended at the
+/// tolerance, each with a tangent of its own. Infinite for other tangents.
+double most_left(const StepSettings& settings);
 
 }  // namespace mbs
