@@ -9,7 +9,6 @@ AdjustableSimulation<Form>::AdjustableSimulation(const Model& model, const StepS
       refined_(settings.tangent != TangentReuse::none || settings.precision == Precision::mixed),
       start_(model.variables()),
       change_(model.variables()),
-      terms_(model.constraints()),
       violation_(model.constraints()) {
   if (settings.tangent != TangentReuse::none) {
     mechanism_.add_held(model, form_.layout(), settings.step);
@@ -28,7 +27,7 @@ StepOutcome AdjustableSimulation<Form>::do_step() {
   StepOutcome outcome{StepStatus::pass_limit, 0, 0};
   ++steps_;
   this->predict();
-  if (!iterate(outcome) || (projected() && !project(outcome))) {
+  if (!iterate(outcome) || (refined_ && projected() && !refine(outcome))) {
     outcome.status = StepStatus::factorization_failed;
   }
   if (outcome.status != StepStatus::converged) factors_due_ = true;
@@ -54,7 +53,7 @@ bool AdjustableSimulation<Form>::iterate(StepOutcome& outcome) {
     const double largest = this->correct();
     const bool converged = largest <= settings_.tolerance;
     if (converged && (every_pass || previous_converged)) outcome.status = StepStatus::converged;
-    if (projected() && !refined_ && this->passes_end(outcome)) this->keep_for_projections();
+    if (projected() && !refined_ && this->passes_end(outcome)) this->project();
     this->evaluate();
     if (every_pass || converged) this->update_multipliers();
     if (settings_.tangent == TangentReuse::kept && !first && !converged &&
@@ -84,21 +83,13 @@ bool AdjustableSimulation<Form>::projected() const {
   return settings_.projections != Projections::none && steps_ % settings_.projections_every == 0;
 }
 
-/// False if a factorization failed.
+/// Refined projections; false if a factorization failed.
 template <class Form>
-bool AdjustableSimulation<Form>::project(StepOutcome& outcome) {
+bool AdjustableSimulation<Form>::refine(StepOutcome& outcome) {
   const double h = settings_.step, tolerance = settings_.tolerance;
-  if (!refined_) {
-    this->project_velocities();
-  } else if (!refine(mechanism_.v, &Mechanism::rates, (2.0 / h) * tolerance, outcome)) {
-    return false;
-  }
-  if (settings_.projections == Projections::velocity) return true;
-  if (!refined_) {
-    this->project_accelerations();
-    return true;
-  }
-  return refine(mechanism_.a, &Mechanism::accelerations, (4.0 / (h * h)) * tolerance, outcome);
+  if (!refine(mechanism_.v, &Mechanism::rates, (2.0 / h) * tolerance, outcome)) return false;
+  return settings_.projections == Projections::velocity ||
+         refine(mechanism_.a, &Mechanism::accelerations, (4.0 / (h * h)) * tolerance, outcome);
 }
 
 /// Eq. (15) for x = v' or a', or the same in the saddle-point form.

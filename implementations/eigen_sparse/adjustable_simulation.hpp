@@ -13,9 +13,8 @@ class AdjustableSimulation final : public SparseSimulation<Form> {
 
  private:
   using Base = SparseSimulation<Form>;
-  using Base::form_, Base::mechanism_, Base::phases_, Base::settings_;
-  /// Phi_t, or d/dt (Phi_q) v' + d/dt Phi_t.
-  using Terms = void (Mechanism::*)(Vector&) const;
+  using Base::form_, Base::mechanism_, Base::phases_, Base::settings_, Base::terms_;
+  using typename Base::Terms;
 
   void do_set_state(const State& state) override;
   StepOutcome do_step() override;
@@ -24,7 +23,7 @@ class AdjustableSimulation final : public SparseSimulation<Form> {
   bool factorize(StepOutcome& outcome);
   /// Whether this step is.
   [[nodiscard]] bool projected() const;
-  bool project(StepOutcome& outcome);
+  bool refine(StepOutcome& outcome);
   bool refine(Vector& x, Terms terms, double tolerance, StepOutcome& outcome);
   void form_refinement(const Vector& x);
   double solve_refinement();
@@ -34,8 +33,7 @@ class AdjustableSimulation final : public SparseSimulation<Form> {
   long steps_ = 0;    // since set_state()
   Vector start_;      // n: v* or a*
   Vector change_;     // n: v* - v' or a* - a'
-  Vector terms_;      // m: what the parentheses of Eq. (15) have besides Phi_q v', Phi_q a'
-  Vector violation_;  // m: the parentheses
+  Vector violation_;  // m: the parentheses of Eq. (15)
 };
 
 extern template class AdjustableSimulation<PenaltyForm<SimplicialSolver<double>>>;

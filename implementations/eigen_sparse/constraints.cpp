@@ -83,14 +83,13 @@ void Constraints::velocity_terms(const Vector& v, Vector& result) const {
 }
 
 template <int kDimension>
-void Constraints::add_products(const double* x, double* result) const {
+void Constraints::add_products(const double* x, const double* y, double* result) const {
   const double* row = jacobian_.valuePtr();
   const int *columns = jacobian_.innerIndexPtr(), *starts = jacobian_.outerIndexPtr();
   const auto add = [&](int width) {
-    using Pair = Eigen::Array2d;
-    Pair along(0.0, 0.0);
-    for (int i = 0; i < width; ++i) along += row[i] * Eigen::Map<const Pair>(x + 2 * columns[i]);
-    for (int i = 0; i < width; ++i) Eigen::Map<Pair>(result + 2 * columns[i]) += row[i] * along;
+    double sum = *y++;
+    for (int i = 0; i < width; ++i) sum += row[i] * x[columns[i]];
+    for (int i = 0; i < width; ++i) result[columns[i]] += row[i] * sum;
     row += width;
     columns += width;
   };
@@ -99,10 +98,10 @@ void Constraints::add_products(const double* x, double* result) const {
   for (int k = distances_; k < jacobian_.rows(); ++k) add(starts[k + 1] - starts[k]);
 }
 
-void Constraints::multiply_squared(const Pairs& x, Pairs& result) const {
+void Constraints::multiply_squared(const Vector& x, const Vector& y, Vector& result) const {
   result.setZero();
-  dimension_ == 2 ? add_products<2>(x.data(), result.data())
-                  : add_products<3>(x.data(), result.data());
+  dimension_ == 2 ? add_products<2>(x.data(), y.data(), result.data())
+                  : add_products<3>(x.data(), y.data(), result.data());
 }
 
 }  // namespace mbs::eigen_sparse

@@ -20,8 +20,8 @@ class Constraints {
   /// Writes (d/dt Phi_q) v to `result` (m), for `v` extended (m/s), Eqs. (7) and (8); what driven
   /// points and values add by their accelerations is not in it.
   void velocity_terms(const Vector& v, Vector& result) const;
-  /// result = Phi_q^T Phi_q x (n x 2), without the detour over Phi_q x in memory.
-  void multiply_squared(const Pairs& x, Pairs& result) const;
+  /// result = Phi_q^T (Phi_q x + y) (n), for x of n entries or more and y (m), in one sweep.
+  void multiply_squared(const Vector& x, const Vector& y, Vector& result) const;
 
   [[nodiscard]] const Vector& phi() const { return phi_; }
   [[nodiscard]] const RowSparseMatrix& jacobian() const { return jacobian_; }
@@ -47,7 +47,7 @@ class Constraints {
   template <int kDimension>
   void evaluate_velocities(const double* v, double* result) const;
   template <int kDimension>
-  void add_products(const double* x, double* result) const;
+  void add_products(const double* x, const double* y, double* result) const;
 
   int dimension_;
   int to_ground_ = 0;  // rows [0, to_ground_) are distances to the ground,

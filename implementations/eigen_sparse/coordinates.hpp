@@ -12,8 +12,6 @@
 namespace mbs::eigen_sparse {
 
 using Vector = Eigen::VectorXd;
-/// What belongs to v and to a, side by side: a sweep over Phi_q serves both.
-using Pairs = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 using SparseMatrix = Eigen::SparseMatrix<double>;  // by columns
 using RowSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 

@@ -64,27 +64,34 @@ void Drivers::sample(double t, Vector& q, Vector& v, Vector& value, Vector& forc
   for (const Mass& mass : masses_) force[mass.at] -= mass.value * acceleration_[mass.point];
 }
 
-/// u_p . B w + u . B w_p for the `motion` of driven points: their velocities or accelerations.
 template <int kDimension>
-void Drivers::add(const Vector& q, const Vector& motion, Vector& result) const {
-  double u[kDimension], w[kDimension], u_p[kDimension], w_p[kDimension];
-  double B_w[kDimension], B_w_p[kDimension];
-  for (const Row& row : rows_) {
+void Drivers::evaluate_rows(const Vector& q) {
+  double u[kDimension], w[kDimension], B_w[kDimension], u_B[kDimension];
+  for (Row& row : rows_) {
     row.pairs.differences<kDimension>(q.data(), u, w);
-    row.pairs.differences<kDimension>(motion.data(), u_p, w_p);
     multiply<kDimension>(row.B, w, B_w);
-    multiply<kDimension>(row.B, w_p, B_w_p);
-    result[row.row] += inner<kDimension>(u_p, B_w) + inner<kDimension>(u, B_w_p);  // Eq. (7)
+    multiply_transposed<kDimension>(row.B, u, u_B);
+    const auto share = [&](const Vector& motion) {
+      double u_p[kDimension], w_p[kDimension];
+      row.pairs.differences<kDimension>(motion.data(), u_p, w_p);
+      return inner<kDimension>(u_p, B_w) + inner<kDimension>(u_B, w_p);  // Eq. (7)
+    };
+    row.rate = share(velocity_);
+    row.acceleration = share(acceleration_);
   }
 }
 
-void Drivers::add_rates(const Vector& q, Vector& result) const {
-  dimension_ == 2 ? add<2>(q, velocity_, result) : add<3>(q, velocity_, result);
+void Drivers::evaluate(const Vector& q) {
+  dimension_ == 2 ? evaluate_rows<2>(q) : evaluate_rows<3>(q);
+}
+
+void Drivers::add_rates(Vector& result) const {
+  for (const Row& row : rows_) result[row.row] += row.rate;
   for (const Value& driven : values_) result[driven.row] -= driven.rate;
 }
 
-void Drivers::add_accelerations(const Vector& q, Vector& result) const {
-  dimension_ == 2 ? add<2>(q, acceleration_, result) : add<3>(q, acceleration_, result);
+void Drivers::add_accelerations(Vector& result) const {
+  for (const Row& row : rows_) result[row.row] += row.acceleration;
   for (const Value& driven : values_) result[driven.row] -= driven.acceleration;
 }
 

@@ -19,10 +19,12 @@ class Drivers {
   /// driven masses' share into `force` (n, N).
   void sample(double t, Vector& q, Vector& v, Vector& value, Vector& force);
 
-  /// Adds Phi_t, Eqs. (7) and (8), to `result` (m); `q` extended.
-  void add_rates(const Vector& q, Vector& result) const;
+  /// Takes `q` (extended): the two below tell what is there.
+  void evaluate(const Vector& q);
+  /// Adds Phi_t, Eqs. (7) and (8), to `result` (m).
+  void add_rates(Vector& result) const;
   /// Adds what accelerations of drivers contribute to d/dt (Phi_q) v + d/dt Phi_t.
-  void add_accelerations(const Vector& q, Vector& result) const;
+  void add_accelerations(Vector& result) const;
 
  private:
   struct Coordinate {
@@ -39,6 +41,7 @@ class Drivers {
     int row;
     PointPairs pairs;
     Matrix B;
+    double rate = 0.0, acceleration = 0.0;  // what its points contribute
   };
   struct Mass {
     int at, point;        // the unknown, and the driven coordinate in extended vectors
@@ -47,7 +50,7 @@ class Drivers {
 
   void add_rows(const Model& model, const Coordinates& coordinates, const std::vector<int>& order);
   template <int kDimension>
-  void add(const Vector& q, const Vector& motion, Vector& result) const;
+  void evaluate_rows(const Vector& q);
 
   int dimension_;
   std::vector<Coordinate> coordinates_;

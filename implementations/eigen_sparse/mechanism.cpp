@@ -14,8 +14,7 @@ Mechanism::Mechanism(const Model& model, Coordinates numbering)
       q(Vector::Zero(coordinates.extended())),
       v(Vector::Zero(coordinates.extended())),
       a(Vector::Zero(model.variables())),
-      lambda(Vector::Zero(model.constraints())),
-      pairs(model.variables(), 2) {
+      lambda(Vector::Zero(model.constraints())) {
   coordinates.gather({model.force().begin(), model.force().end()}, force);
   const std::vector<double>& fixed = coordinates.fixed();
   std::copy(fixed.begin(), fixed.end(), q.data() + model.variables());
@@ -94,19 +93,19 @@ void Mechanism::multiply(const Vector& x, Vector& result) {
   for (const auto& element : in_tangent()) element->add_product(x, result);
 }
 
-const Pairs& Mechanism::motion() {
-  for (Eigen::Index i = 0; i < a.size(); ++i) pairs.row(i) << v[i], a[i];
-  return pairs;
+void Mechanism::evaluate() {
+  constraints.evaluate(q);
+  if (drivers) drivers->evaluate(q);
 }
 
 void Mechanism::rates(Vector& result) const {
   result.setZero();
-  if (drivers) drivers->add_rates(q, result);
+  if (drivers) drivers->add_rates(result);
 }
 
 void Mechanism::accelerations(Vector& result) const {
   constraints.velocity_terms(v, result);
-  if (drivers) drivers->add_accelerations(q, result);
+  if (drivers) drivers->add_accelerations(result);
 }
 
 }  // namespace mbs::eigen_sparse

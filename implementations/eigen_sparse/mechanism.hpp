@@ -39,11 +39,11 @@ struct Mechanism {
   void add_to_tangent(double* values) const;
   /// result = [M + (dt/2) C + (dt^2/4) K] x (n) with C and K of the last matrix, Eq. (15).
   void multiply(const Vector& x, Vector& result);
-  /// v' and a' (n x 2).
-  const Pairs& motion();
-  /// result = Phi_t (m), Eqs. (7) and (8).
+  /// Phi, Phi_q and what drivers add to the two below at q'.
+  void evaluate();
+  /// result = Phi_t (m) at the q' of the last evaluate(), Eqs. (7) and (8).
   void rates(Vector& result) const;
-  /// result = d/dt (Phi_q) v' + d/dt Phi_t (m), Eqs. (7) and (8).
+  /// result = d/dt (Phi_q) v' + d/dt Phi_t (m) there, Eqs. (7) and (8).
   void accelerations(Vector& result) const;
 
   /// Those that have C and K of the last matrix.
@@ -59,7 +59,6 @@ struct Mechanism {
 
   Vector q, v;  // extended by fixed points
   Vector a, lambda;
-  Pairs pairs;  // what motion() returns
 };
 
 /// Solves of a refinement at most: projections, velocities and accelerations of RATTLE.

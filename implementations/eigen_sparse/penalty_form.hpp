@@ -23,8 +23,7 @@ class PenaltyForm {
                  quarter_ * penalty_),
         solver_(tangent_.matrix(), Definiteness::positive),
         delta_(model.variables()),
-        multiplier_(Vector::Zero(model.constraints())),
-        kept_(model.variables(), 2) {
+        multiplier_(Vector::Zero(model.constraints())) {
     mechanism.add_forces(model, layout(), settings.step);
   }
 
@@ -42,23 +41,9 @@ class PenaltyForm {
     mechanism_.unbalanced_force(multiplier_, delta_);
     delta_ *= quarter_;
   }
-  /// Keeps J^T J v* and J^T J a* for the projections: before Phi_q is evaluated anew.
-  void keep_for_projections() {
-    mechanism_.constraints.multiply_squared(mechanism_.motion(), kept_);
-  }
-  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*.
-  void form_velocity_projection() {
-    delta_ = kept_.col(0);
-    if (mechanism_.drivers) {
-      mechanism_.rates(multiplier_);
-      add_by_constraints();
-    }
-    delta_ *= -quarter_ * penalty_;
-  }
-  void form_acceleration_projection() {
-    delta_ = kept_.col(1);
-    mechanism_.accelerations(multiplier_);
-    add_by_constraints();
+  /// Right-hand side of Eq. (6) for the change of `x`, v* or a*, with `terms` (m) next to J x.
+  void form_projection(const Vector& x, const Vector& terms) {
+    mechanism_.constraints.multiply_squared(x, terms, delta_);
     delta_ *= -quarter_ * penalty_;
   }
 
@@ -68,7 +53,7 @@ class PenaltyForm {
   void form_refinement(const Vector& change, const Vector& violation) {
     mechanism_.multiply(change, delta_);
     multiplier_ = (-quarter_ * penalty_) * violation;
-    add_by_constraints();
+    delta_.noalias() += mechanism_.constraints.jacobian().transpose() * multiplier_;
   }
   /// Accepts what solve() made of it.
   void accept_refinement() {}
@@ -77,16 +62,14 @@ class PenaltyForm {
   /// The solution (n).
   [[nodiscard]] Vector& delta() { return delta_; }
 
+  /// Applies what solve() made of lambda: nothing here.
+  void correct_multipliers() {}
   /// lambda after a pass, with Phi at the new q'.
   void update_multipliers() {
     mechanism_.lambda += penalty_ * mechanism_.constraints.phi();  // Eq. (1)
   }
 
  private:
-  void add_by_constraints() {
-    delta_.noalias() += mechanism_.constraints.jacobian().transpose() * multiplier_;
-  }
-
   double quarter_;  // dt^2/4
   double penalty_;
   Mechanism& mechanism_;
@@ -94,7 +77,6 @@ class PenaltyForm {
   Solver solver_;
   Vector delta_;       // n: right-hand sides, overwritten by solutions
   Vector multiplier_;  // m: what Phi_q^T is applied to
-  Pairs kept_;         // n x 2: J^T J v* and J^T J a*
 };
 
 }  // namespace mbs::eigen_sparse

@@ -19,8 +19,7 @@ class SaddleForm {
         equations_(model, epsilon_, mechanism, stiffness_of(model)),
         delta_(model.variables()),
         multiplier_(model.constraints()),
-        nu_(model.constraints()),
-        kept_(model.constraints(), 2) {
+        nu_(model.constraints()) {
     mechanism.add_forces(model, layout(), settings.step);
   }
 
@@ -40,20 +39,11 @@ class SaddleForm {
     delta_ *= quarter_;
     multiplier_ = -mechanism_.constraints.phi();
   }
-  /// Keeps J v* and J a* for the projections: before Phi_q is evaluated anew.
-  void keep_for_projections() {
-    kept_.noalias() = mechanism_.constraints.jacobian() * mechanism_.motion();
-  }
-  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*.
-  void form_velocity_projection() {
+  /// Right-hand side of Eq. (13) for the change of `x`, v* or a*, with `terms` (m) next to J x.
+  void form_projection(const Vector& x, const Vector& terms) {
     delta_.setZero();
-    mechanism_.rates(multiplier_);
-    multiplier_ = -multiplier_ - kept_.col(0);
-  }
-  void form_acceleration_projection() {
-    delta_.setZero();
-    mechanism_.accelerations(multiplier_);
-    multiplier_ = -multiplier_ - kept_.col(1);
+    multiplier_ = -terms;
+    multiplier_.noalias() -= mechanism_.constraints.jacobian() * x.head(delta_.size());
   }
 
   /// Begins to refine a projection with nu = 0.
@@ -72,7 +62,9 @@ class SaddleForm {
   [[nodiscard]] Vector& delta() { return delta_; }
 
   /// lambda after a pass, with mu of its solve().
-  void update_multipliers() { mechanism_.lambda += (1.0 / quarter_) * multiplier_; }
+  void correct_multipliers() { mechanism_.lambda += (1.0 / quarter_) * multiplier_; }
+  /// Phi at the new q' adds nothing here.
+  void update_multipliers() {}
 
  private:
   static Stiffness stiffness_of(const Model& model) {
@@ -87,7 +79,6 @@ class SaddleForm {
   Vector delta_;       // n: first blocks of right-hand sides, overwritten by solutions
   Vector multiplier_;  // m: second blocks
   Vector nu_;          // m: of the projection that is being refined
-  Pairs kept_;         // m x 2: J v* and J a*
 };
 
 }  // namespace mbs::eigen_sparse

@@ -8,7 +8,8 @@ SparseSimulation<Form>::SparseSimulation(const Model& model, const StepSettings&
     : Simulation(model, settings),
       settings_(settings),
       mechanism_(model, numbered_by(model, Form::Solver::elimination_order)),
-      form_(model, settings, mechanism_) {}
+      form_(model, settings, mechanism_),
+      terms_(model.constraints()) {}
 
 template <class Form>
 void SparseSimulation<Form>::do_set_state(const State& state) {
@@ -38,12 +39,10 @@ StepOutcome SparseSimulation<Form>::do_step() {
     phases_.enter(Phase::solve);
     form_.solve();  // Eqs. (4), (12)
     if (correct() <= settings_.tolerance) outcome.status = StepStatus::converged;
-    if (settings_.projections != Projections::none && passes_end(outcome)) keep_for_projections();
+    if (passes_end(outcome)) project();
     evaluate();
     update_multipliers();
   }
-  if (settings_.projections != Projections::none) project_velocities();
-  if (settings_.projections == Projections::both) project_accelerations();
   phases_.enter(Phase::other);
   return outcome;
 }
@@ -60,6 +59,7 @@ void SparseSimulation<Form>::predict() {
 template <class Form>
 double SparseSimulation<Form>::correct() {
   phases_.enter(Phase::other);
+  form_.correct_multipliers();
   return mechanism_.correct(settings_.step, form_.delta());
 }
 
@@ -69,42 +69,34 @@ bool SparseSimulation<Form>::passes_end(const StepOutcome& outcome) const {
 }
 
 template <class Form>
-void SparseSimulation<Form>::keep_for_projections() {
+void SparseSimulation<Form>::project() {
+  if (settings_.projections == Projections::none) return;
+  project(mechanism_.v, &Mechanism::rates);
+  if (settings_.projections == Projections::both) project(mechanism_.a, &Mechanism::accelerations);
+}
+
+/// Eq. (6) or (13) for x = v' or a'.
+template <class Form>
+void SparseSimulation<Form>::project(Vector& x, Terms terms) {
   phases_.enter(Phase::projection);
-  form_.keep_for_projections();
+  (mechanism_.*terms)(terms_);
+  form_.form_projection(x, terms_);
+  phases_.enter(Phase::solve);
+  form_.solve();
+  phases_.enter(Phase::projection);
+  x.head(form_.delta().size()) += form_.delta();  // driven points have v alone
 }
 
 template <class Form>
 void SparseSimulation<Form>::evaluate() {
   phases_.enter(Phase::evaluation);
-  mechanism_.constraints.evaluate(mechanism_.q);
+  mechanism_.evaluate();
 }
 
 template <class Form>
 void SparseSimulation<Form>::update_multipliers() {
   phases_.enter(Phase::other);
   form_.update_multipliers();
-}
-
-template <class Form>
-void SparseSimulation<Form>::project_velocities() {
-  phases_.enter(Phase::projection);
-  form_.form_velocity_projection();
-  solve_projection(mechanism_.v);
-}
-
-template <class Form>
-void SparseSimulation<Form>::project_accelerations() {
-  form_.form_acceleration_projection();
-  solve_projection(mechanism_.a);
-}
-
-template <class Form>
-void SparseSimulation<Form>::solve_projection(Vector& x) {
-  phases_.enter(Phase::solve);
-  form_.solve();  // Eqs. (6), (13)
-  phases_.enter(Phase::projection);
-  x.head(form_.delta().size()) += form_.delta();  // driven points have v alone
 }
 
 template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;

@@ -25,25 +25,26 @@ class SparseSimulation : public Simulation {
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
 
+  /// Phi_t, or d/dt (Phi_q) v' + d/dt Phi_t.
+  using Terms = void (Mechanism::*)(Vector&) const;
+
   /// Drivers, q', v', a' and the constraints there.
   void predict();
-  /// Applies delta; returns max |delta|.
+  /// Applies the solution of Eq. (4) or (12); returns max |delta|.
   double correct();
   /// Whether no pass follows, once `outcome` knows of the present one's correction.
   [[nodiscard]] bool passes_end(const StepOutcome& outcome) const;
-  /// Keeps what the projections need of J, between correct() and evaluate() of the last pass.
-  void keep_for_projections();
+  /// v' and a' as the settings say, between correct() and evaluate() of the last pass.
+  void project();
+  void project(Vector& x, Terms terms);
   /// The constraints at the new q'.
   void evaluate();
   void update_multipliers();
-  void project_velocities();
-  void project_accelerations();
-  /// x (v or a) += the solution of the projection that is formed.
-  void solve_projection(Vector& x);
 
   StepSettings settings_;
   Mechanism mechanism_;
   Form form_;
+  Vector terms_;  // m: what Phi_q v' or Phi_q a' is added to in a projection
 };
 
 extern template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
