@@ -36,20 +36,20 @@ void Assembly::tangent(Matrix& result) {
   forces_.add_to(result);  // Eq. (5)
 }
 
-void Assembly::normal_product(const Vector& x, Vector& right) {
-  matmul(constraints_.Phi_q(), std::span(x).first(layout_.variables), rates_);
+void Assembly::velocity_right(const Vector& v, Vector& right) {
+  matmul(constraints_.Phi_q(), std::span(v).first(layout_.moving), rates_);  // driven points, too
+  drivers_.subtract_rates(rates_);
+  projection_right(right);
+}
+
+void Assembly::acceleration_right(const Vector& v, const Vector& a, Vector& right) {
+  rates_ = constraints_.second_derivative(v, drivers_);
+  add_product(constraints_.Phi_q(), 0, a, rates_);
+  projection_right(right);
+}
+
+void Assembly::projection_right(Vector& right) {
   matmul(constraints_.Phi_q_transposed(), rates_, right);
-}
-
-void Assembly::velocity_right(Vector& right) {
-  const Matrix& Phi_q_transposed = constraints_.Phi_q_transposed();
-  if (driven()) add_product(Phi_q_transposed, 0, constraints_.time_derivative(drivers_), right);
-  for (double& entry : right) entry *= -factor_;  // Eq. (6)
-}
-
-void Assembly::acceleration_right(const Vector& v, Vector& right) {
-  const Vector& second_derivative = constraints_.second_derivative(v, drivers_);
-  add_product(constraints_.Phi_q_transposed(), 0, second_derivative, right);
   for (double& entry : right) entry *= -factor_;  // Eq. (6)
 }
 

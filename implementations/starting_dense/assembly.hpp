@@ -38,14 +38,15 @@ class Assembly {
   void residual(const Vector& a, const Vector& multipliers, Vector& right);
   /// result (n x n) = M + dt/2 C + dt^2/4 (alpha Phi_q^T Phi_q + K).
   void tangent(Matrix& result);
-  /// right (n) = Phi_q^T Phi_q x, with the first n entries of x.
-  void normal_product(const Vector& x, Vector& right);
-  /// right (n), of Eq. (6) for v' - v*. J^T J v* goes in, with J the Phi_q of tangent().
-  void velocity_right(Vector& right);
+  /// right (n), of Eq. (6) for v' - v*, with the v* and the Phi_q of tangent().
+  void velocity_right(const Vector& v, Vector& right);
   /// The same for a' - a*, with the projected v.
-  void acceleration_right(const Vector& v, Vector& right);
+  void acceleration_right(const Vector& v, const Vector& a, Vector& right);
 
  private:
+  /// right (n) = -dt^2/4 alpha Phi_q^T rates_.
+  void projection_right(Vector& right);
+
   const Layout layout_;
   const double factor_;  ///< dt^2/4 alpha
   Matrix M_;
@@ -54,7 +55,7 @@ class Assembly {
   Forces forces_;
   Drivers drivers_;
   Vector product_;  ///< n
-  Vector rates_;    ///< Phi_q x of normal_product(), m
+  Vector rates_;    ///< derivatives of Phi by time that the projections take away, m
 };
 
 }  // namespace mbs::starting_dense

@@ -26,8 +26,6 @@ Constraints::Constraints(const Model& model, const Layout& layout)
     add_linear(linear, static_cast<int>(values_.size()));
     values_.push_back(linear.value);
   }
-  const bool driven = layout.moving > layout.variables || !model.driven_values().empty();
-  if (driven) time_derivative_.resize(model.constraints());
 }
 
 void Constraints::add_quadratic(const Layout& layout, const std::array<int, 4>& points) {
@@ -93,13 +91,6 @@ void Constraints::evaluate_linear(const Vector& q) {
     for (; k < end; ++k) sum += terms_[k].coefficient * q[terms_[k].coordinate];
     phi_[row++] = sum;
   }
-}
-
-const Vector& Constraints::time_derivative(const Drivers& drivers) {
-  std::fill(time_derivative_.begin(), time_derivative_.end(), 0.0);
-  drivers.subtract_rates(time_derivative_);
-  add_product(Phi_q_, variables_, drivers.velocity(), time_derivative_);  // Eqs. (7), (8)
-  return time_derivative_;
 }
 
 const Vector& Constraints::second_derivative(const Vector& v, const Drivers& drivers) {

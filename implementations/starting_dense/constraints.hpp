@@ -29,8 +29,6 @@ class Constraints {
   /// s of every constraint (m), the drivers' to overwrite.
   Vector& values() { return values_; }
 
-  /// Phi_t (m) at the coordinates of the last evaluate(), for a model with drivers.
-  const Vector& time_derivative(const Drivers& drivers);
   /// Phi_q_dot v + Phi_t_dot (m), with `v` in m/s.
   const Vector& second_derivative(const Vector& v, const Drivers& drivers);
 
@@ -61,7 +59,6 @@ class Constraints {
   Matrix Phi_q_;  ///< rows of linear constraints are set once
   Matrix Phi_q_transposed_;
   Vector second_derivative_;  ///< m; stays zero for linear constraints without a driver
-  Vector time_derivative_;    ///< m; empty without drivers
 };
 
 }  // namespace mbs::starting_dense

@@ -4,9 +4,7 @@
 namespace mbs::starting_dense {
 
 Drivers::Drivers(const Model& model, const Layout& layout)
-    : variables_(layout.variables),
-      velocity_(layout.moving - layout.variables),
-      acceleration_(velocity_.size()) {
+    : variables_(layout.variables), acceleration_(layout.moving - layout.variables) {
   for (const DrivenPoint& driven : model.driven_points()) {
     for (int x = 0; x < layout.dimension; ++x) positions_.push_back(&driven.position[x]);
   }
@@ -23,7 +21,7 @@ void Drivers::sample(double t, Vector& q, Vector& v, Vector& values, Vector& Q) 
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     const TimeFunction::Sample sample = positions_[i]->at(t);
     q[variables_ + i] = sample.value;
-    v[variables_ + i] = velocity_[i] = sample.rate;
+    v[variables_ + i] = sample.rate;
     acceleration_[i] = sample.acceleration;
   }
   for (Value& value : values_) {

@@ -19,14 +19,13 @@ class Drivers {
   Drivers(const Model& model, const Layout& layout);
 
   /// Whether nothing depends on time: then no other member is needed.
-  [[nodiscard]] bool empty() const { return velocity_.empty() && values_.empty(); }
+  [[nodiscard]] bool empty() const { return positions_.empty() && values_.empty(); }
 
   /// Evaluates everything at time t (s), and writes the position and velocity of driven points to
   /// `q` and `v` (extended), driven s to `values` (m), and Q (n) where a driven mass changes it.
   void sample(double t, Vector& q, Vector& v, Vector& values, Vector& Q);
 
-  /// r_p' and r_p'' of the last sample (d).
-  [[nodiscard]] const Vector& velocity() const { return velocity_; }
+  /// r_p'' of the last sample (d).
   [[nodiscard]] const Vector& acceleration() const { return acceleration_; }
   /// result (m) -= s'; the other -= s'', of the last sample.
   void subtract_rates(Vector& result) const;
@@ -49,7 +48,7 @@ class Drivers {
   std::vector<const TimeFunction*> positions_;  ///< d
   std::vector<Value> values_;
   std::vector<Mass> masses_;
-  Vector velocity_, acceleration_;
+  Vector acceleration_;
 };
 
 }  // namespace mbs::starting_dense

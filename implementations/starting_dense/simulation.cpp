@@ -17,9 +17,7 @@ DenseSimulation::DenseSimulation(const Model& model, const StepSettings& setting
       a_(n_),
       lambda_(model.constraints()),
       multipliers_(model.constraints()),
-      solution_(n_),
-      velocity_change_(n_),
-      acceleration_change_(n_) {
+      solution_(n_) {
   std::copy(model.initial_velocity().begin(), model.initial_velocity().end(), v_.begin());
 }
 
@@ -54,10 +52,9 @@ StepOutcome DenseSimulation::do_step() {
     }
     if (converged) outcome.status = StepStatus::converged;
     last = converged || outcome.passes == settings_.max_passes;
-    if (last) start_projections();
+    if (last) project();  // before Phi_q is evaluated anew
     update_multipliers();
   }
-  project();
   phases_.enter(Phase::other);
   return outcome;
 }
@@ -117,27 +114,19 @@ void DenseSimulation::update_multipliers() {
   }
 }
 
-void DenseSimulation::start_projections() {
-  if (settings_.projections == Projections::none) return;
-  phases_.enter(Phase::projection);
-  assembly_.normal_product(v_, velocity_change_);
-  if (settings_.projections == Projections::velocity) return;
-  assembly_.normal_product(a_, acceleration_change_);
-}
-
 void DenseSimulation::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.velocity_right(velocity_change_);  // Eq. (6), velocities
+  assembly_.velocity_right(v_, solution_);  // Eq. (6), velocities
   phases_.enter(Phase::solve);
-  solver_.solve(velocity_change_);
-  for (int i = 0; i < n_; ++i) v_[i] += velocity_change_[i];
+  solver_.solve(solution_);
+  for (int i = 0; i < n_; ++i) v_[i] += solution_[i];
   if (settings_.projections == Projections::velocity) return;
   phases_.enter(Phase::projection);
-  assembly_.acceleration_right(v_, acceleration_change_);  // Eq. (6), accelerations
+  assembly_.acceleration_right(v_, a_, solution_);  // Eq. (6), accelerations
   phases_.enter(Phase::solve);
-  solver_.solve(acceleration_change_);
-  for (int i = 0; i < n_; ++i) a_[i] += acceleration_change_[i];
+  solver_.solve(solution_);
+  for (int i = 0; i < n_; ++i) a_[i] += solution_[i];
 }
 
 }  // namespace mbs::starting_dense

@@ -24,8 +24,7 @@ class DenseSimulation final : public Simulation {
   void apply_increment(bool& converged);
   /// Evaluates Phi and Phi_q at the new q' and updates lambda.
   void update_multipliers();
-  /// Takes what project() needs of the Phi_q in the tangent matrix, before Phi_q is evaluated anew.
-  void start_projections();
+  /// Eq. (6), solved for v' - v* and a' - a*; Phi_q is still the one in the tangent.
   void project();
 
   const StepSettings settings_;
@@ -35,9 +34,7 @@ class DenseSimulation final : public Simulation {
 
   Vector q_, v_, a_, lambda_;
   Vector multipliers_;  ///< lambda + alpha Phi, m
-  Vector solution_;     ///< n; right-hand side, then solution of Eq. (4)
-  /// n; the same of Eq. (6), solved for v' - v* and a' - a*.
-  Vector velocity_change_, acceleration_change_;
+  Vector solution_;     ///< n; right-hand side, then solution of Eq. (4) or (6)
 };
 
 }  // namespace mbs::starting_dense

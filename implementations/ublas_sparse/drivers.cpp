@@ -67,10 +67,9 @@ void Drivers::add_products(const Points& points, const std::vector<double>& x, V
   }
 }
 
-void Drivers::evaluate_rate(const Points& points, Vector& Phi_t) const {
-  std::fill(Phi_t.begin(), Phi_t.end(), 0.0);
-  add_products(points, velocity_, Phi_t);                                    // Eq. (7)
-  for (const Value& value : values_) Phi_t(value.row) -= value.sample.rate;  // Eqs. (7), (8)
+void Drivers::add_rate(const Points& points, Vector& rate) const {
+  add_products(points, velocity_, rate);                                    // Eq. (7)
+  for (const Value& value : values_) rate(value.row) -= value.sample.rate;  // Eqs. (7), (8)
 }
 
 void Drivers::add_acceleration_term(const Points& points, Vector& term) const {

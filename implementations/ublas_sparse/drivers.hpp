@@ -22,8 +22,8 @@ class Drivers {
   void sample(double t, Points& points, Constraints& constraints);
   /// Subtracts the share of driven mass in Q (n, N).
   void subtract_force(Vector& rhs) const;
-  /// Phi_t (m, m^2/s), written.
-  void evaluate_rate(const Points& points, Vector& Phi_t) const;
+  /// Adds Phi_t (m, m^2/s).
+  void add_rate(const Points& points, Vector& rate) const;
   /// Adds what accelerations of drivers give to the term of Phi'' free of a (m, m^2/s^2).
   void add_acceleration_term(const Points& points, Vector& term) const;
 

@@ -1,52 +1,39 @@
 // The projections that end a step, Eq. (6), solved for what they change.
-#include "simulation.hpp"  // first: matrices.hpp sets up uBLAS
-
 #include <boost/numeric/ublas/operation.hpp>
+
+#include "simulation.hpp"  // first: matrices.hpp sets up uBLAS
 
 namespace mbs::ublas_sparse {
 
 using boost::numeric::ublas::axpy_prod;
 using boost::numeric::ublas::noalias;
 
-namespace {
-
-/// J^T J x (n) by way of J x (m). The C at hand is not for this: its rounding does not lie in the
-/// range of J^T, and alpha times it would move x along the directions that constraints leave free.
-void multiply_twice(const SparseMatrix& J, const Vector& x, Vector& Jx, Vector& JtJx) {
-  axpy_prod(J, x, Jx, true);
-  axpy_prod(Jx, J, JtJx, true);
-}
-
-}  // namespace
-
 template <class Product>
 void UblasSimulation<Product>::project() {
   phases_.enter(Phase::projection);
-  SparseMatrix& Phi_q = matrices_.Phi_q;
-  const bool both = settings_.projections == Projections::both;
-  multiply_twice(Phi_q, v_, weight_, rhs_);
-  if (both) multiply_twice(Phi_q, a_, weight_, next_);
-  constraints_.evaluate_jacobian(points_, Phi_q);
-  if (!drivers_.empty()) {
-    drivers_.evaluate_rate(points_, weight_);
-    axpy_prod(weight_, Phi_q, rhs_, false);
-  }
-  correct(rhs_, v_);
-  if (!both) return;
+  const SparseMatrix& Phi_q = matrices_.Phi_q;  // of the last pass, as points_ are
+  axpy_prod(Phi_q, v_, weight_, true);
+  if (!drivers_.empty()) drivers_.add_rate(points_, weight_);
+  correct(v_);
+  if (settings_.projections == Projections::velocity) return;
   points_.set_velocity(v_.data());
   constraints_.evaluate_acceleration_term(points_, weight_);
   if (!drivers_.empty()) drivers_.add_acceleration_term(points_, weight_);
-  axpy_prod(weight_, Phi_q, next_, false);
-  correct(next_, a_);
+  axpy_prod(Phi_q, a_, weight_, false);
+  correct(a_);
 }
 
+/// Phi_q^T is multiplied with Phi_q x + ..., in weight_. The C at hand is not for this: its
+/// rounding does not lie in the range of Phi_q^T, and alpha times it would move x along the
+/// directions that constraints leave free.
 template <class Product>
-void UblasSimulation<Product>::correct(Vector& right, Vector& x) {
-  right *= -scale_ * settings_.penalty;
+void UblasSimulation<Product>::correct(Vector& x) {
+  axpy_prod(weight_, matrices_.Phi_q, rhs_, true);
+  rhs_ *= -scale_ * settings_.penalty;
   phases_.enter(Phase::solve);
-  solver_.solve(right);
+  solver_.solve(rhs_);
   phases_.enter(Phase::projection);
-  noalias(x) += right;  // Eq. (6)
+  noalias(x) += rhs_;  // Eq. (6)
 }
 
 template void UblasSimulation<ExpressionProduct>::project();

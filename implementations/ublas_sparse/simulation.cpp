@@ -83,13 +83,15 @@ StepOutcome UblasSimulation<Product>::do_step() {
     solver_.solve(rhs_);  // Eq. (4)
     phases_.enter(Phase::other);
     if (update()) outcome.status = StepStatus::converged;
+    const bool is_last =
+        outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (is_last && settings_.projections != Projections::none) project();
     phases_.enter(Phase::evaluation);
     points_.move_to(q_.data());
     constraints_.evaluate(points_, Phi_);
     phases_.enter(Phase::other);
     noalias(lambda_) += settings_.penalty * Phi_;  // Eq. (1)
   }
-  if (settings_.projections != Projections::none) project();
   phases_.enter(Phase::other);
   return outcome;
 }

@@ -30,10 +30,10 @@ class UblasSimulation final : public Simulation {
   void assemble_tangent();
   /// Applies the solved correction in rhs_; true if it is within the tolerance.
   [[nodiscard]] bool update();
-  /// Both projections, or that of v alone; Phi_q comes in as that of the last pass.
+  /// Both projections, or that of v alone; points_ and Phi_q are still those of the last pass.
   void project();
-  /// Solves Eq. (6) for the change of x, v or a. `right`, J^T J x + Phi_q^T weight_ (n), is spent.
-  void correct(Vector& right, Vector& x);
+  /// Solves Eq. (6) for the change of x, v or a, from the rate of Phi that comes with x in weight_.
+  void correct(Vector& x);
   /// M + (step / 2) C + (step^2 / 4) K of the last pass; M itself where nothing adds to it.
   [[nodiscard]] const SparseMatrix& S() const { return forces_.has_stiffness() ? S_ : M_; }
 
@@ -52,7 +52,7 @@ class UblasSimulation final : public Simulation {
   Vector q_, v_, a_, lambda_;
   Vector Phi_, weight_;  // m
   Vector rhs_;           // n
-  Vector next_;          // n, the next q; in the projections the right-hand side for a
+  Vector next_;          // n, the next q
 };
 
 }  // namespace mbs::ublas_sparse
