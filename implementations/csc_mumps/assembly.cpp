@@ -19,24 +19,21 @@ void Assembly::balance(const double* q, const double* v, const double* a, const 
   }
 }
 
-void Assembly::add_rates(const double* x, double* rates) const {
+void Assembly::add_product(const double* x, double* result) const {
   const int* start = jacobian_pattern_.start.data();
   const int* row = jacobian_pattern_.row.data();
   for (int j = 0; j < variables_; ++j) {
     const double x_j = x[j];
-    for (int k = start[j]; k < start[j + 1]; ++k) rates[row[k]] += matrix_jacobian_[k] * x_j;
+    for (int k = start[j]; k < start[j + 1]; ++k) result[row[k]] += jacobian_[k] * x_j;
   }
 }
 
-void Assembly::react(double factor, const double* rates, const double* weights,
-                     double* right) const {
+void Assembly::react(double factor, const double* weights, double* right) const {
   const int* start = jacobian_pattern_.start.data();
   const int* row = jacobian_pattern_.row.data();
   for (int j = 0; j < variables_; ++j) {
     double sum = 0.0;
-    for (int k = start[j]; k < start[j + 1]; ++k) {
-      sum += matrix_jacobian_[k] * rates[row[k]] + jacobian_[k] * weights[row[k]];
-    }
+    for (int k = start[j]; k < start[j + 1]; ++k) sum += jacobian_[k] * weights[row[k]];
     right[j] = -factor * sum;
   }
 }

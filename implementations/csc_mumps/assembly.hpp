@@ -37,20 +37,18 @@ class Assembly {
     return std::span(jacobian_).first(jacobian_pattern_.row.size());
   }
   [[nodiscard]] int linear_row() const { return linear_row_; }
-  /// phi_t (m) = Phi_t at q.
-  void velocity_terms(const double* q, double* phi_t) const;
-  /// free_part (m) = dPhi_q/dt v + dPhi_t/dt at q, v.
-  void acceleration_terms(const double* q, const double* v, double* free_part) const;
+  /// result (m) = the first derivative of Phi by time with v, the second with v and a: Phi_q v +
+  /// Phi_t, Phi_q a + dPhi_q/dt v + dPhi_t/dt, at the q of evaluate_constraints().
+  void first_derivative(const double* v, double* result) const;
+  void second_derivative(const double* v, const double* a, double* result) const;
 
   /// right (n) = -(Delta t^2 / 4) (M a + Phi_q' weights - Q), with the Phi_q evaluated last.
   /// Evaluates the forces.
   void balance(const double* q, const double* v, const double* a, const double* weights,
                double* right);
   [[nodiscard]] const Forces& forces() const { return forces_; }
-  /// rates (m) += J x (n). J is the Phi_q evaluated last but one: after a pass, that in its matrix.
-  void add_rates(const double* x, double* rates) const;
-  /// right (n) = -factor (J' rates + Phi_q' weights); both are of length m.
-  void react(double factor, const double* rates, const double* weights, double* right) const;
+  /// right (n) = -factor Phi_q' weights (m).
+  void react(double factor, const double* weights, double* right) const;
 
  private:
   /// Offsets of the two points in an extended vector; `row` of Phi.
@@ -84,6 +82,7 @@ class Assembly {
   void evaluate_linear(const double* q);
   template <int kDimension>
   void evaluate_squares(const double* v, double* result) const;
+  void add_product(const double* x, double* result) const;  // result (m) += Phi_q x
   void multiply_mass(const double* x, double* y) const;
 
   int variables_ = 0, dimension_ = 0;
@@ -102,12 +101,12 @@ class Assembly {
   std::vector<LinearConstraint::Term> linear_terms_;
   std::vector<double> linear_value_;
   std::vector<double> phi_;
+  std::vector<double> evaluated_;  // its q, extended; with drivers
 
   // Phi_q by columns. write_order_ lists the places in jacobian_ in the order in which evaluation
   // writes them; the entry behind the last true one takes what nobody wants (fixed points).
-  // Evaluation first swaps the values with those of J; linear rows are in both.
   ColumnPattern jacobian_pattern_;
-  std::vector<double> jacobian_, matrix_jacobian_;
+  std::vector<double> jacobian_;
   std::vector<int> write_order_;
 
   ColumnPattern mass_pattern_;

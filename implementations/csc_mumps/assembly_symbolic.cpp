@@ -26,6 +26,9 @@ void Assembly::Builder::build(double step) {
   attach_drivers();
   build_mass();
   self_.fixed_coordinates_ = std::move(points_.fixed);
+  if (!self_.drivers_.empty()) {
+    self_.evaluated_.resize(self_.variables_ + self_.fixed_coordinates_.size());
+  }
 }
 
 void Assembly::Builder::collect_rows() {
@@ -130,7 +133,6 @@ void Assembly::Builder::lower_linear() {
     self_.linear_value_.push_back(linear.value);
     ++row;
   }
-  self_.matrix_jacobian_ = self_.jacobian_;
 }
 
 void Assembly::Builder::build_mass() {

@@ -6,9 +6,9 @@
 namespace mbs::csc_mumps {
 
 void Assembly::evaluate_constraints(const double* q_extended) {
-  jacobian_.swap(matrix_jacobian_);
   dimension_ == 2 ? evaluate_constraints_in<2>(q_extended) : evaluate_constraints_in<3>(q_extended);
   if (!linear_value_.empty()) evaluate_linear(q_extended);
+  if (!drivers_.empty()) evaluated_.assign(q_extended, q_extended + evaluated_.size());
 }
 
 template <int kDimension>
@@ -77,15 +77,17 @@ void Assembly::evaluate_linear(const double* q) {
   }
 }
 
-void Assembly::velocity_terms(const double* q, double* phi_t) const {
-  std::fill(phi_t, phi_t + phi_.size(), 0.0);
-  if (!drivers_.empty()) drivers_.add_velocity(q, phi_t);
+void Assembly::first_derivative(const double* v, double* result) const {
+  std::fill(result, result + phi_.size(), 0.0);
+  if (!drivers_.empty()) drivers_.add_velocity(evaluated_.data(), result);
+  add_product(v, result);
 }
 
-void Assembly::acceleration_terms(const double* q, const double* v, double* free_part) const {
-  dimension_ == 2 ? evaluate_squares<2>(v, free_part) : evaluate_squares<3>(v, free_part);
-  std::fill(free_part + linear_row_, free_part + phi_.size(), 0.0);  // Eq. (8)
-  if (!drivers_.empty()) drivers_.add_acceleration(q, free_part);
+void Assembly::second_derivative(const double* v, const double* a, double* result) const {
+  dimension_ == 2 ? evaluate_squares<2>(v, result) : evaluate_squares<3>(v, result);
+  std::fill(result + linear_row_, result + phi_.size(), 0.0);  // Eq. (8)
+  if (!drivers_.empty()) drivers_.add_acceleration(evaluated_.data(), result);
+  add_product(a, result);
 }
 
 /// result = dPhi_q/dt v, Eq. (7), of all but linear constraints.

@@ -41,10 +41,8 @@ void PenaltySimulation::update_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
 }
 
-bool PenaltySimulation::solve_projection(const double* rates) {
-  std::fill(weights_.begin(), weights_.end(), 0.0);
-  assembly_.add_rates(rates, weights_.data());
-  assembly_.react(reaction_factor_, weights_.data(), free_part_.data(), x_.data());
+bool PenaltySimulation::solve_projection() {
+  assembly_.react(reaction_factor_, rates_.data(), x_.data());
   phases_.enter(Phase::solve);
   return solver_.solve(x_);  // Eq. (6)
 }

@@ -16,13 +16,13 @@ class PenaltySimulation : public CscMumpsSimulation {
  protected:
   bool solve_newton() override;
   void update_multipliers() override;
-  bool solve_projection(const double* rates) override;
+  bool solve_projection() override;
 
  private:
   const double reaction_factor_;  // (Delta t^2 / 4) alpha
   Tangent tangent_;
   MultifrontalSolver solver_;
-  std::vector<double> weights_;  // m; what the columns of Phi_q or J are multiplied with
+  std::vector<double> weights_;  // m; what the columns of Phi_q are multiplied with
 };
 
 }  // namespace mbs::csc_mumps

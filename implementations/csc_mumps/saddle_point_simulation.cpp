@@ -21,15 +21,14 @@ bool SaddlePointSimulation::solve_newton() {
   return solver_.factorize_and_solve(x_);  // Eq. (12)
 }
 
-void SaddlePointSimulation::update_multipliers() {
+void SaddlePointSimulation::take_multipliers() {
   const double* mu = lower();
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += acceleration_factor_ * mu[i];
 }
 
-bool SaddlePointSimulation::solve_projection(const double* rates) {
+bool SaddlePointSimulation::solve_projection() {
   std::fill_n(x_.begin(), variables_, 0.0);
-  assembly_.add_rates(rates, free_part_.data());
-  std::transform(free_part_.begin(), free_part_.end(), lower(), std::negate<>());
+  std::transform(rates_.begin(), rates_.end(), lower(), std::negate<>());
   phases_.enter(Phase::solve);
   return solver_.solve(x_);  // Eq. (13)
 }

@@ -13,8 +13,8 @@ class SaddlePointSimulation : public CscMumpsSimulation {
 
  protected:
   bool solve_newton() override;
-  void update_multipliers() override;
-  bool solve_projection(const double* rates) override;
+  void take_multipliers() override;
+  bool solve_projection() override;
 
  private:
   /// Where x_ has what belongs to the constraints.

@@ -27,7 +27,7 @@ CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& s
       assembly_(model, settings.step),
       a_(variables_, 0.0),
       lambda_(model.constraints(), 0.0),
-      free_part_(model.constraints(), 0.0),
+      rates_(model.constraints(), 0.0),
       x_(unknowns, 0.0) {
   const std::span<const double> fixed = assembly_.fixed_coordinates();
   q_.assign(model.initial_position().begin(), model.initial_position().end());
@@ -54,16 +54,13 @@ StepOutcome CscMumpsSimulation::do_step() {
   phases_.enter(Phase::other);
   if (assembly_.is_driven()) assembly_.drive(time(), q_.data(), v_.data());
   predict();
-  int passes = 0;
-  Pass pass = Pass::unconverged;
-  while (pass == Pass::unconverged && passes < settings_.max_passes) {
-    pass = newton_pass();
-    ++passes;
+  StepOutcome outcome{StepStatus::pass_limit};
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    newton_pass(outcome);
   }
-  const bool solved = pass != Pass::failed && project();
   phases_.enter(Phase::other);
-  if (!solved) return {StepStatus::factorization_failed, passes};
-  return {pass == Pass::converged ? StepStatus::converged : StepStatus::pass_limit, passes};
+  return outcome;
 }
 
 void CscMumpsSimulation::predict() {
@@ -79,15 +76,21 @@ void CscMumpsSimulation::predict() {
   assembly_.evaluate_constraints(q_.data());
 }
 
-CscMumpsSimulation::Pass CscMumpsSimulation::newton_pass() {
-  if (!solve_newton()) return Pass::failed;
+/// Of the step's last pass with the projections, which come before the constraints are evaluated
+/// anew.
+void CscMumpsSimulation::newton_pass(StepOutcome& outcome) {
+  outcome.status = StepStatus::factorization_failed;
+  if (!solve_newton()) return;
   phases_.enter(Phase::other);
   const bool converged = correct();
+  take_multipliers();
+  const bool is_last = converged || outcome.passes == settings_.max_passes;
+  if (is_last && !project()) return;
   phases_.enter(Phase::evaluation);
   assembly_.evaluate_constraints(q_.data());
   phases_.enter(Phase::other);
   update_multipliers();
-  return converged ? Pass::converged : Pass::unconverged;
+  outcome.status = converged ? StepStatus::converged : StepStatus::pass_limit;
 }
 
 /// Applies Delta q, the beginning of x_. True if all of it is within the tolerance; a NaN is not.
@@ -107,17 +110,17 @@ bool CscMumpsSimulation::correct() {
 bool CscMumpsSimulation::project() {
   if (settings_.projections == Projections::none) return true;
   phases_.enter(Phase::projection);
-  assembly_.velocity_terms(q_.data(), free_part_.data());
+  assembly_.first_derivative(v_.data(), rates_.data());
   if (!change(v_)) return false;
   if (settings_.projections == Projections::velocity) return true;
-  assembly_.acceleration_terms(q_.data(), v_.data(), free_part_.data());
+  assembly_.second_derivative(v_.data(), a_.data(), rates_.data());
   return change(a_);
 }
 
-bool CscMumpsSimulation::change(std::vector<double>& rates) {
-  if (!solve_projection(rates.data())) return false;
+bool CscMumpsSimulation::change(std::vector<double>& x) {
+  if (!solve_projection()) return false;
   phases_.enter(Phase::projection);
-  for (int i = 0; i < variables_; ++i) rates[i] += x_[i];
+  for (int i = 0; i < variables_; ++i) x[i] += x_[i];
   return true;
 }
 

@@ -29,11 +29,13 @@ class CscMumpsSimulation : public Simulation {
   /// Makes x_ begin with Delta q, for the constraints evaluated at q_. False if the matrix cannot
   /// be factorized.
   virtual bool solve_newton() = 0;
-  /// After the correction, with the constraints evaluated at the new q_.
-  virtual void update_multipliers() = 0;
-  /// Makes x_ begin with what projection changes `rates` by, v_ or a_, with the factors of the last
-  /// pass; may overwrite free_part_. False if the solver gave up.
-  virtual bool solve_projection(const double* rates) = 0;
+  /// After the correction: of what comes with Delta q, and of the constraints evaluated at the new
+  /// q_.
+  virtual void take_multipliers() {}
+  virtual void update_multipliers() {}
+  /// Makes x_ begin with the change of v_ or a_ that takes rates_ away, with the factors of the
+  /// last pass. False if the solver gave up.
+  virtual bool solve_projection() = 0;
 
   const int variables_;
   const StepSettings settings_;
@@ -42,18 +44,15 @@ class CscMumpsSimulation : public Simulation {
   Assembly assembly_;
   std::vector<double> q_, v_;       // extended; v_ ends in driven velocities, or zeros
   std::vector<double> a_, lambda_;  // n, m
-  std::vector<double> free_part_;   // m; Phi_t for v_, dPhi_q/dt v + dPhi_t/dt for a_
+  std::vector<double> rates_;       // m; derivative of Phi by time that a projection takes away
   std::vector<double> x_;           // unknowns; handed to the solver and got back from it
 
  private:
-  /// What one Newton pass came to.
-  enum class Pass { converged, unconverged, failed };
-
   void predict();
-  Pass newton_pass();
+  void newton_pass(StepOutcome& outcome);
   bool correct();
   bool project();
-  bool change(std::vector<double>& rates);
+  bool change(std::vector<double>& x);
 };
 
 }  // namespace mbs::csc_mumps

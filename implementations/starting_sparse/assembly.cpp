@@ -7,6 +7,7 @@
 namespace mbs::starting_sparse {
 
 void Assembly::evaluate(const double* q) {
+  if (is_driven()) evaluated_.assign(q, q + evaluated_.size());
   dimension_ == 2 ? evaluate_dots<2>(q) : evaluate_dots<3>(q);
   for (int row = quadratic_count_; row < constraints_; ++row) {
     double sum = -value_[row];
@@ -57,7 +58,7 @@ void Assembly::residual(const double* q, const double* v, const double* a, const
                         double* right) {
   for (int i = 0; i < constraints_; ++i) multiplier_[i] = lambda[i] + penalty_ * phi_[i];
   multiply_mass(a, right);
-  add_transposed_product(constraints_, right);
+  for (int i = 0; i < constraints_; ++i) add_gradient(i, multiplier_[i], right);
   for (int i = 0; i < variables_; ++i) right[i] = weight_ * (force_[i] - right[i]);  // Eq. (3)
   forces_.add_forces(q, v, right);
 }
@@ -71,46 +72,49 @@ void Assembly::assemble() {
   forces_.assemble(values_.data() + forces_first_);
 }
 
-void Assembly::prepare_projection(const double* x, double* right) const {
+void Assembly::project_velocity(const double* v, double* right) {
+  std::fill(multiplier_.begin(), multiplier_.end(), 0.0);
+  add_terms(drivers_.velocity_terms(evaluated_.data()));
+  project(v, right);
+}
+
+void Assembly::project_acceleration(const double* v, const double* a, double* right) {
+  dimension_ == 2 ? evaluate_derivative<2>(v) : evaluate_derivative<3>(v);
+  std::fill(multiplier_.begin() + quadratic_count_, multiplier_.end(), 0.0);
+  add_terms(drivers_.acceleration_terms(evaluated_.data()));
+  project(a, right);
+}
+
+/// right = -weight alpha Phi_q' (Phi_q x + multiplier_), Eq. (6), row by row.
+void Assembly::project(const double* x, double* right) const {
   std::fill_n(right, variables_, 0.0);
   for (int row = 0; row < constraints_; ++row) {
-    double sum = 0.0;
+    double sum = multiplier_[row];
     for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
       sum += jacobian_[nonzero_place_[k]] * x[nonzero_column_[k]];
     }
-    add_gradient(row, -weight_ * penalty_ * sum, right);  // Eq. (6)
+    add_gradient(row, -weight_ * penalty_ * sum, right);
   }
 }
 
-void Assembly::project_velocity(const double* q, double* right) {
-  add_time_terms(drivers_.velocity_terms(q), right);  // Eq. (6)
-}
-
-void Assembly::project_acceleration(const double* q, const double* v, double* right) {
-  dimension_ == 2 ? evaluate_derivative<2>(v) : evaluate_derivative<3>(v);
-  add_transposed_product(quadratic_count_, right);  // Eq. (6)
-  add_time_terms(drivers_.acceleration_terms(q), right);
-}
-
-/// multiplier_ = -weight alpha 2 u' . w', Eq. (7), or u' . B w', for the quadratic constraints; the
-/// rest of dPhi_q/dt v + dPhi_t/dt is the drivers'.
+/// multiplier_ = 2 u' . w', Eq. (7), or 2 u' . B w', for the quadratic constraints; the rest of
+/// dPhi_q/dt v + dPhi_t/dt is the drivers'.
 template <int kDimension>
 void Assembly::evaluate_derivative(const double* v) {
-  const double factor = -2.0 * weight_ * penalty_;
   for (const Distance& distance : distances_) {
     double square = 0.0;
     for (int axis = 0; axis < kDimension; ++axis) {
       const double difference = v[distance.a + axis] - v[distance.b + axis];
       square += difference * difference;
     }
-    multiplier_[distance.row] = factor * square;
+    multiplier_[distance.row] = 2.0 * square;
   }
   for (const Dot& dot : dots_) {
     double product = 0.0;
     for (int axis = 0; axis < kDimension; ++axis) {
       product += (v[dot.a + axis] - v[dot.b + axis]) * (v[dot.c + axis] - v[dot.d + axis]);
     }
-    multiplier_[dot.row] = factor * product;
+    multiplier_[dot.row] = 2.0 * product;
   }
   evaluate_bilinear_derivative<kDimension>(v);
 }
@@ -132,16 +136,9 @@ void Assembly::add_gradient(int row, double factor, double* y) const {
   }
 }
 
-/// y += Phi_q' multiplier_ over the first `row_count` rows.
-void Assembly::add_transposed_product(int row_count, double* y) const {
-  for (int row = 0; row < row_count; ++row) add_gradient(row, multiplier_[row], y);
-}
-
-/// y -= weight alpha Phi_q' `terms`, which are those of the rows that depend on time.
-void Assembly::add_time_terms(std::span<const double> terms, double* y) const {
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    add_gradient(drivers_.rows()[i], -weight_ * penalty_ * terms[i], y);
-  }
+/// multiplier_ += `terms`, which are those of the rows that depend on time.
+void Assembly::add_terms(std::span<const double> terms) {
+  for (std::size_t i = 0; i < terms.size(); ++i) multiplier_[drivers_.rows()[i]] += terms[i];
 }
 
 }  // namespace mbs::starting_sparse

@@ -43,13 +43,10 @@ class Assembly {
                 double* right);
   /// Writes what Eq. (5) adds to M behind the entries of M.
   void assemble();
-  /// right (n) = -weight alpha J' J x with J, the Phi_q as last evaluated: the part of Eq. (6) that
-  /// x = v* or a* (n) has, solved for what it changes. J must still be the one in T.
-  void prepare_projection(const double* x, double* right) const;
-  /// right (n) += the rest of Eq. (6) for v, at the evaluated q (extended).
-  void project_velocity(const double* q, double* right);
-  /// right (n) += the rest of Eq. (6) for a, at the evaluated q and for v (both extended).
-  void project_acceleration(const double* q, const double* v, double* right);
+  /// right (n) = that of Eq. (6) for v' - v*, at the last evaluation, with v* (n).
+  void project_velocity(const double* v, double* right);
+  /// The same for a' - a*, with v' (extended) and a* (n).
+  void project_acceleration(const double* v, const double* a, double* right);
 
  private:
   /// r_a - r_b at `a` and `b` of an extended vector; derivatives go to `to_a`, `to_b` of jacobian_.
@@ -84,8 +81,8 @@ class Assembly {
   void evaluate_bilinear_derivative(const double* v);
   void multiply_mass(const double* x, double* y) const;
   void add_gradient(int row, double factor, double* y) const;
-  void add_transposed_product(int row_count, double* y) const;
-  void add_time_terms(std::span<const double> terms, double* y) const;
+  void add_terms(std::span<const double> terms);
+  void project(const double* x, double* right) const;
 
   int variables_ = 0, constraints_ = 0, dimension_ = 0;
   int quadratic_count_ = 0;  // of dot and bilinear constraints, the first rows of Phi
@@ -101,6 +98,7 @@ class Assembly {
   std::vector<Bilinear> bilinears_;
   std::vector<double> value_;  // m; what each constraint subtracts, as last driven
   std::vector<double> phi_;
+  std::vector<double> evaluated_;   // its q, extended; with drivers
   std::vector<double> multiplier_;  // m; what the next Phi_q' is multiplied with
 
   // Phi_q, m x stride_, the gradient of one constraint after the other. The `dimension` columns

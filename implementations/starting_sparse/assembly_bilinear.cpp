@@ -29,7 +29,7 @@ void Assembly::evaluate_bilinears(const double* q) {
   }
 }
 
-/// multiplier_ = -weight alpha 2 u' . B w'.
+/// multiplier_ = 2 u' . B w'.
 template <int kDimension>
 void Assembly::evaluate_bilinear_derivative(const double* v) {
   for (const Bilinear& bilinear : bilinears_) {
@@ -42,7 +42,7 @@ void Assembly::evaluate_bilinear_derivative(const double* v) {
       }
       product += (v[at.a + i] - v[at.b + i]) * Bw;
     }
-    multiplier_[at.row] = -2.0 * weight_ * penalty_ * product;
+    multiplier_[at.row] = 2.0 * product;
   }
 }
 

@@ -33,6 +33,7 @@ Assembly::Assembly(const Model& model, const StepSettings& settings)
       multiplier_(constraints_),
       stride_(variables_ + dimension_) {
   require_memory(model);
+  if (is_driven()) evaluated_.resize(variables_ + fixed_.size());
   jacobian_.resize(static_cast<std::size_t>(constraints_) * stride_);
   append_mass(model);
   row_start_.push_back(0);

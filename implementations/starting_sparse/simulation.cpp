@@ -19,9 +19,7 @@ StartingSparseSimulation::StartingSparseSimulation(const Model& model, const Ste
       v_(model.initial_velocity().begin(), model.initial_velocity().end()),
       a_(model.variables()),
       lambda_(model.constraints()),
-      solution_(model.variables()),
-      velocity_change_(model.variables()),
-      acceleration_change_(model.variables()) {
+      solution_(model.variables()) {
   q_.insert(q_.end(), assembly_.fixed_coordinates().begin(), assembly_.fixed_coordinates().end());
   v_.resize(q_.size());
 }
@@ -55,13 +53,13 @@ StepOutcome StartingSparseSimulation::do_step() {
       break;
     }
     if (advance()) outcome.status = StepStatus::converged;
-    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
-      prepare_projections();
+    const bool is_last =
+        outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (is_last && !project()) {
+      outcome.status = StepStatus::factorization_failed;
+      break;
     }
     evaluate_and_raise_multipliers();
-  }
-  if (outcome.status != StepStatus::factorization_failed && !project()) {
-    outcome.status = StepStatus::factorization_failed;
   }
   phases_.enter(Phase::other);
   return outcome;
@@ -105,15 +103,6 @@ bool StartingSparseSimulation::advance() {
   return exceeding == 0;
 }
 
-/// Takes what Eq. (6) needs of the Phi_q in T, before it is evaluated anew.
-void StartingSparseSimulation::prepare_projections() {
-  if (settings_.projections == Projections::none) return;
-  phases_.enter(Phase::projection);
-  assembly_.prepare_projection(v_.data(), velocity_change_.data());
-  if (settings_.projections == Projections::velocity) return;
-  assembly_.prepare_projection(a_.data(), acceleration_change_.data());
-}
-
 void StartingSparseSimulation::evaluate_and_raise_multipliers() {
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_.data());
@@ -122,21 +111,23 @@ void StartingSparseSimulation::evaluate_and_raise_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
 }
 
-/// Eq. (6) with the last factorization, as far as the settings want it. False if a solution failed.
+/// Eq. (6) with the last factorization and its Phi_q, as far as the settings want it. False if a
+/// solution failed.
 bool StartingSparseSimulation::project() {
   if (settings_.projections == Projections::none) return true;
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(q_.data(), velocity_change_.data());
-  phases_.enter(Phase::solve);
-  if (!solver_.solve(velocity_change_.data())) return false;
-  phases_.enter(Phase::projection);
-  for (std::size_t i = 0; i < a_.size(); ++i) v_[i] += velocity_change_[i];
+  assembly_.project_velocity(v_.data(), solution_.data());
+  if (!change(v_)) return false;
   if (settings_.projections == Projections::velocity) return true;
-  assembly_.project_acceleration(q_.data(), v_.data(), acceleration_change_.data());
+  assembly_.project_acceleration(v_.data(), a_.data(), solution_.data());
+  return change(a_);
+}
+
+bool StartingSparseSimulation::change(std::vector<double>& x) {
   phases_.enter(Phase::solve);
-  if (!solver_.solve(acceleration_change_.data())) return false;
+  if (!solver_.solve(solution_.data())) return false;
   phases_.enter(Phase::projection);
-  for (std::size_t i = 0; i < a_.size(); ++i) a_[i] += acceleration_change_[i];
+  for (std::size_t i = 0; i < solution_.size(); ++i) x[i] += solution_[i];
   return true;
 }
 

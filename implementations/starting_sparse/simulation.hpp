@@ -26,9 +26,9 @@ class StartingSparseSimulation : public Simulation {
   void predict();
   [[nodiscard]] bool solve_newton();
   [[nodiscard]] bool advance();
-  void prepare_projections();
   void evaluate_and_raise_multipliers();
   [[nodiscard]] bool project();
+  [[nodiscard]] bool change(std::vector<double>& x);
 
   StepSettings settings_;
   Assembly assembly_;
@@ -36,8 +36,6 @@ class StartingSparseSimulation : public Simulation {
   std::vector<double> q_, v_;       // extended by the fixed points, see Assembly
   std::vector<double> a_, lambda_;  // n, m
   std::vector<double> solution_;    // n; right-hand side before, unknowns after a solution
-  // n, of Eq. (6), likewise: v' - v* and a' - a* in the end.
-  std::vector<double> velocity_change_, acceleration_change_;
 };
 
 }  // namespace mbs::starting_sparse
