@@ -119,12 +119,8 @@ void Constraints::drive(double t) {
 
 void Constraints::evaluate(const double* q) {
   dimension_ == 2 ? evaluate_dots<2>(q) : evaluate_dots<3>(q);
-  for (int row = first_linear_, t = 0; row < count(); ++row) {  // Eq. (8)
-    double sum = -value_[row];
-    for (; t < linear_begin_[row - first_linear_ + 1]; ++t) {
-      sum += linear_coefficient_[t] * q[linear_variable_[t]];
-    }
-    Phi[row] = sum;
+  for (int row = first_linear_; row < count(); ++row) {
+    Phi[row] = linear_product(row, q) - value_[row];  // Eq. (8)
   }
 }
 
@@ -179,25 +175,38 @@ void Constraints::evaluate_dots(const double* q) {
   }
 }
 
-void Constraints::rate(const double* v, double* result) const {
-  multiply(v, result);
+void Constraints::rate(double* result) const {
+  std::fill_n(result, count(), 0.0);
   for (const DrivenRow& driven : driven_) result[driven.row] -= value_rate_[driven.row];
 }
 
-void Constraints::second_rate(const double* v, const double* a, double* result) const {
-  multiply(a, result);
-  dimension_ == 2 ? add_squares<2>(v, result) : add_squares<3>(v, result);
+void Constraints::second_rate(const double* v, double* result) const {
+  dimension_ == 2 ? write_squares<2>(v, result) : write_squares<3>(v, result);
   for (const DrivenRow& driven : driven_) result[driven.row] -= value_acceleration_[driven.row];
 }
 
-void Constraints::multiply(const double* x, double* product) const {
-  for (const auto& [group, first] : groups_) group->contract(x, product + first);
+void Constraints::add_product(const double* x, double* y) const {
+  for (const auto& [group, first] : groups_) group->add_contracted(x, y + first);
+  for (int row = first_linear_; row < count(); ++row) y[row] += linear_product(row, x);
+}
+
+void Constraints::write_reactions(double factor, const double* x, const double* y,
+                                  double* parts) const {
+  for (const auto& [group, first] : groups_) group->write_reactions(factor, x, y + first, parts);
+  double* part = parts + first_linear_part_;
   for (int row = first_linear_, t = 0; row < count(); ++row) {
-    product[row] = 0.0;
-    for (; t < linear_begin_[row - first_linear_ + 1]; ++t) {
-      product[row] += linear_coefficient_[t] * x[linear_variable_[t]];
-    }
+    const double sum = factor * (y[row] + linear_product(row, x));
+    for (; t < linear_begin_[row - first_linear_ + 1]; ++t) part[t] = linear_coefficient_[t] * sum;
   }
+}
+
+double Constraints::linear_product(int row, const double* x) const {
+  double sum = 0.0;
+  for (int t = linear_begin_[row - first_linear_]; t < linear_begin_[row - first_linear_ + 1];
+       ++t) {
+    sum += linear_coefficient_[t] * x[linear_variable_[t]];
+  }
+  return sum;
 }
 
 void Constraints::write_forces(const double* g, double* parts) const {
@@ -219,21 +228,21 @@ void Constraints::write_products(double factor, double* parts) const {
 }
 
 template <int dimension>
-void Constraints::add_squares(const double* v, double* __restrict result) const {
+void Constraints::write_squares(const double* v, double* __restrict result) const {
   for (int k = 0; k < distances_.count; ++k) {
     double sum = 0.0;
     for (int c = 0; c < dimension; ++c) {
       const double u = distances_.difference(v, c, k);
       sum += u * u;
     }
-    result[k] += 2 * sum;
+    result[k] = 2 * sum;
   }
   for (int k = 0; k < dots_.count; ++k) {
     double sum = 0.0;
     for (int c = 0; c < dimension; ++c) {
       sum += dots_.difference(v, c, k) * dots_.difference(v, dimension + c, k);
     }
-    result[distances_.count + k] += 2 * sum;
+    result[distances_.count + k] = 2 * sum;
   }
   for (int k = 0; k < bilinear_.count; ++k) {
     double sum = 0.0;
@@ -243,8 +252,9 @@ void Constraints::add_squares(const double* v, double* __restrict result) const 
                bilinear_.difference(v, dimension + c, k);
       }
     }
-    result[distances_.count + dots_.count + k] += 2 * sum;
+    result[distances_.count + dots_.count + k] = 2 * sum;
   }
+  std::fill_n(result + first_linear_, count() - first_linear_, 0.0);
 }
 
 }  // namespace mbs::csc_ldl

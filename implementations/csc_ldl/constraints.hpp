@@ -33,10 +33,14 @@ class Constraints {
   /// Values that drivers prescribe, at time t.
   void drive(double t);
   void evaluate(const double* q);
-  /// The first and the second derivative of Phi by time; v and a are those of all points. With the
-  /// Phi_q of the last evaluate().
-  void rate(const double* v, double* result) const;
-  void second_rate(const double* v, const double* a, double* result) const;
+  /// What the first and the second derivative of Phi by time have beside Phi_q v and Phi_q a, where
+  /// v and a are those of all points.
+  void rate(double* result) const;
+  void second_rate(const double* v, double* result) const;
+  /// y += Phi_q x, with what driven points have in x.
+  void add_product(const double* x, double* y) const;
+  /// factor Phi_q^T (Phi_q x + y), in parts.
+  void write_reactions(double factor, const double* x, const double* y, double* parts) const;
   /// Phi_q^T g, in parts.
   void write_forces(const double* g, double* parts) const;
   /// factor Phi_q^T Phi_q of all rows but linear ones, in parts.
@@ -45,12 +49,11 @@ class Constraints {
   std::vector<double> Phi;
 
  private:
-  /// Phi_q x, with what driven points have in x.
-  void multiply(const double* x, double* product) const;
+  [[nodiscard]] double linear_product(int row, const double* x) const;
   template <int dimension>
   void evaluate_dots(const double* q);
   template <int dimension>
-  void add_squares(const double* v, double* result) const;
+  void write_squares(const double* v, double* result) const;
 
   struct DrivenRow {
     int row;

@@ -1,6 +1,7 @@
 // Springs, laws and couples; equations are those of paper/README.md.
 #include "elements.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -131,7 +132,8 @@ void Elements::evaluate(const double* q, const double* v, double* force_parts,
   }
   for (Family* family : {&lines_, &angles_}) {
     if (family->group.count == 0) continue;
-    family->group.contract(v, family->rate.data());
+    std::ranges::fill(family->rate, 0.0);
+    family->group.add_contracted(v, family->rate.data());
     evaluate_forces(*family, family == &lines_);
     family->group.write_forces([family](int k) { return family->force[k]; }, force_parts);
     family->group.write_products([family](int k) { return family->slope[k]; }, matrix_parts);

@@ -82,14 +82,36 @@ struct Group {
   [[nodiscard]] double difference(const double* x, int c, int k) const {
     return x[plus[c * count + k]] - x[minus[c * count + k]];
   }
-  /// y_k = gradient_k . x, a row of Phi_q times x. x counts at fixed points, too.
-  void contract(const double* x, double* y) const {
+  /// y_k += gradient_k . x, a row of Phi_q times x. x counts at fixed points, too.
+  void add_contracted(const double* x, double* y) const {
     with_components([&](auto components) {
 #pragma GCC ivdep
       for (int k = 0; k < count; ++k) {
-        double sum = 0.0;
+        double sum = y[k];
         for (int c = 0; c < components; ++c) sum += gradient[c * count + k] * difference(x, c, k);
         y[k] = sum;
+      }
+    });
+  }
+  /// Gradients times factor (gradient_k . x + y_k).
+  void write_reactions(double factor, const double* x, const double* y, double* parts) const {
+    with_components([=, this](auto components) {
+      const int n = count;
+      const double* all = gradient.data();
+      const int *from = plus.data(), *to = minus.data();
+      double* part = parts + first_force;
+#pragma GCC ivdep
+      for (int k = 0; k < n; ++k) {
+        double g[components], sum = y[k];
+        for (int c = 0; c < components; ++c) {
+          g[c] = all[c * n + k];
+          sum += g[c] * (x[from[c * n + k]] - x[to[c * n + k]]);
+        }
+        sum *= factor;
+        for (int c = 0; c < components; ++c) {
+          part[2 * c * n + k] = sum * g[c];
+          part[(2 * c + 1) * n + k] = -sum * g[c];
+        }
       }
     });
   }

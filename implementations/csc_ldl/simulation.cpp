@@ -228,21 +228,21 @@ const double* LdlSimulation::of_all_points(const Vector& x, Vector& all) {
 // Eq. (6) or (13), with the last pass's factors and Phi_q, solved for what it changes.
 void LdlSimulation::project() {
   phases_.enter(Phase::projection);
-  constraints_.rate(of_all_points(v_, all_v_), g_.data());
-  project(v_);
+  constraints_.rate(g_.data());
+  project(v_, of_all_points(v_, all_v_));
   if (settings_.projections == Projections::velocity) return;
-  constraints_.second_rate(of_all_points(v_, all_v_), of_all_points(a_, all_a_), g_.data());
-  project(a_);
+  constraints_.second_rate(of_all_points(v_, all_v_), g_.data());
+  project(a_, of_all_points(a_, all_a_));
 }
 
-// x + what the projection changes, g_ being the rate of Phi with x = v*, or its second one with a*.
-void LdlSimulation::project(Vector& x) {
+// x + what takes Phi_q x + g_ away, x being v* or a*; `all` has driven points', too.
+void LdlSimulation::project(Vector& x, const double* all) {
   std::ranges::fill(top_, 0.0);
   if (saddle_point_) {
+    constraints_.add_product(all, g_.data());
     for (int k = 0; k < m_; ++k) bottom_[k] = -g_[k];
   } else {
-    for (int k = 0; k < m_; ++k) g_[k] *= -dt_ * dt_ / 4 * alpha_;
-    constraints_.write_forces(g_.data(), row_parts_.data());
+    constraints_.write_reactions(-dt_ * dt_ / 4 * alpha_, all, g_.data(), row_parts_.data());
     row_forces_.apply(top_.data(), row_parts_.data(), top_.data());
   }
   solve();

@@ -37,7 +37,7 @@ class LdlSimulation final : public Simulation {
   void update_multipliers(const Vector& change, double factor);
 
   [[nodiscard]] const double* of_all_points(const Vector& x, Vector& all);
-  void project(Vector& x);
+  void project(Vector& x, const double* all);
 
   const Model& model_;
   const StepSettings settings_;
