@@ -52,10 +52,17 @@ void Assembly::negative_residual(const arma::vec& x, const arma::vec& v, const a
   add_product(-h_, constraints_.jacobian(), n_, m_, mu.memptr(), rhs.memptr());
 }
 
-void Assembly::accelerations(const arma::vec& x, const arma::vec& v, arma::vec& out) const {
+void Assembly::first_derivative(const arma::vec& v, arma::vec& out) const {
+  out.zeros();
+  constraints_.add_product(v, out);
+  if (is_driven()) drivers_.add_rates(evaluated_, out);
+}
+
+void Assembly::second_derivative(const arma::vec& v, const arma::vec& a, arma::vec& out) const {
   constraints_.evaluate_accelerations(v, out);
   std::fill(out.begin() + constraints_.quadratics(), out.end(), 0.0);
-  if (!drivers_.empty()) drivers_.add_accelerations(x, out);
+  constraints_.add_product(a, out);
+  if (is_driven()) drivers_.add_accelerations(evaluated_, out);
 }
 
 }  // namespace mbs::armadillo_dense

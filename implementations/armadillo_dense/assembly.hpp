@@ -31,17 +31,20 @@ class Assembly {
   void drive(double t, arma::vec& x, arma::vec& v);
 
   /// Evaluates Phi and Phi_q at x; what follows uses them.
-  void evaluate(const arma::vec& x) { constraints_.evaluate(x); }
+  void evaluate(const arma::vec& x) {
+    constraints_.evaluate(x);
+    if (is_driven()) evaluated_ = x;
+  }
 
  protected:
   /// rhs (n) = -f of Eq. (3) with a (n) = a' and mu (m) in place of lambda + alpha Phi. Evaluates
   /// the forces, and with them C and K, which what follows uses.
   void negative_residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                          const arma::vec& mu, arma::vec& rhs);
-  /// out = Phi_t, of all m rows, or of the first ones if the others are zero; only if driven.
-  void rates(const arma::vec& x, arma::vec& out) const { drivers_.evaluate_rates(x, out); }
-  /// out = derivative of (Phi_q v + Phi_t) without its a, likewise, driven or not.
-  void accelerations(const arma::vec& x, const arma::vec& v, arma::vec& out) const;
+  /// out (m) = Phi_q v + Phi_t at the last evaluate().
+  void first_derivative(const arma::vec& v, arma::vec& out) const;
+  /// out (m) = its derivative, with a (n).
+  void second_derivative(const arma::vec& v, const arma::vec& a, arma::vec& out) const;
 
   Layout layout_;
   arma::blas_int n_, m_;
@@ -52,6 +55,9 @@ class Assembly {
 
   arma::mat M_;         ///< n x n, lower triangle
   arma::vec scaled_Q_;  ///< n, h Q without forces_
+
+ private:
+  arma::vec evaluated_;  ///< x of the last evaluate(), if driven
 };
 
 }  // namespace mbs::armadillo_dense

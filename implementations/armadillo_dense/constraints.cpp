@@ -153,7 +153,7 @@ void Constraints::evaluate(const arma::vec& x) {
 }
 
 template <int dimension>
-void Constraints::multiply(const double* x, double* out) const {
+void Constraints::add_product(const double* x, double* out) const {
   const double* const jacobian = jacobian_.memptr();
   const uword n = layout_.n;
   for (const Block& block : blocks_) {
@@ -164,12 +164,11 @@ void Constraints::multiply(const double* x, double* out) const {
   }
 }
 
-void Constraints::multiply(const arma::vec& x, arma::vec& out) const {
-  out.zeros();
+void Constraints::add_product(const arma::vec& x, arma::vec& out) const {
   if (layout_.dimension == 2) {
-    multiply<2>(x.memptr(), out.memptr());
+    add_product<2>(x.memptr(), out.memptr());
   } else {
-    multiply<3>(x.memptr(), out.memptr());
+    add_product<3>(x.memptr(), out.memptr());
   }
   for (const Linear& c : linears_) {
     for (int k = c.first; k < c.last; ++k)

@@ -29,8 +29,8 @@ class Constraints {
   /// How many rows of Phi vary; they are the first ones.
   [[nodiscard]] int quadratics() const { return quadratics_; }
 
-  /// out (m) = Phi_q x, with the first n entries of x and Phi_q of the last evaluate().
-  void multiply(const arma::vec& x, arma::vec& out) const;
+  /// out (m) += Phi_q x, with the first n entries of x and Phi_q of the last evaluate().
+  void add_product(const arma::vec& x, arma::vec& out) const;
   /// out (its first quadratics() entries) = derivative of Phi_q times v, with extended velocities
   /// v.
   void evaluate_accelerations(const arma::vec& v, arma::vec& out) const;
@@ -80,7 +80,7 @@ class Constraints {
   template <int dimension>
   void evaluate_bilinears(const double* x);
   template <int dimension>
-  void multiply(const double* x, double* out) const;
+  void add_product(const double* x, double* out) const;
   template <int dimension>
   void evaluate_accelerations(const double* v, double* out) const;
 

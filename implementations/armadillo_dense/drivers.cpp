@@ -15,10 +15,8 @@ Drivers::Drivers(const Model& model, const Layout& layout) : layout_(layout) {
     lower_points(model);
     lower_products(model);
   }
-  const auto linear = model.dot_constraints().size() + model.bilinear_constraints().size();
   for (const DrivenValue& driven : model.driven_values()) {
     values_.push_back({.row = driven.constraint, .value = driven.value, .sample = {}});
-    drive_linear_ |= static_cast<std::size_t>(driven.constraint) >= linear;
   }
 }
 
@@ -80,8 +78,7 @@ void Drivers::load(double h, arma::vec& scaled_Q) const {
   }
 }
 
-void Drivers::evaluate_rates(const arma::vec& x, arma::vec& out) const {
-  out.zeros();
+void Drivers::add_rates(const arma::vec& x, arma::vec& out) const {
   add_products(x, rates_, out);                                                   // Eq. (7)
   for (const DrivenRow& driven : values_) out[driven.row] -= driven.sample.rate;  // Eqs. (7), (8)
 }

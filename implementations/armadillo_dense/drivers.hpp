@@ -17,8 +17,6 @@ class Drivers {
   Drivers(const Model& model, const Layout& layout);
 
   [[nodiscard]] bool empty() const { return points_.empty() && values_.empty(); }
-  /// Whether a linear constraint is driven: only then is its row of Phi_t not zero.
-  [[nodiscard]] bool drive_linear() const { return drive_linear_; }
 
   /// Takes all values at time t (s): into extended positions x and velocities v, and the constraint
   /// values s (m).
@@ -26,8 +24,8 @@ class Drivers {
   /// Sets h Q at the coordinates that driven masses act on.
   void load(double h, arma::vec& scaled_Q) const;
 
-  /// out = Phi_t at extended positions x.
-  void evaluate_rates(const arma::vec& x, arma::vec& out) const;
+  /// out (m) += Phi_t at extended positions x.
+  void add_rates(const arma::vec& x, arma::vec& out) const;
   /// out += the terms of driven accelerations in the derivative of Phi_q v + Phi_t.
   void add_accelerations(const arma::vec& x, arma::vec& out) const;
 
@@ -60,7 +58,6 @@ class Drivers {
   void add_products(const arma::vec& x, const arma::vec& driven, arma::vec& out) const;
 
   const Layout& layout_;
-  bool drive_linear_ = false;
   std::vector<DrivenPlace> points_;
   std::vector<DrivenRow> values_;
   std::vector<Product> products_;

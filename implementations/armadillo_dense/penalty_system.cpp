@@ -10,9 +10,7 @@ PenaltySystem::PenaltySystem(const Model& model, const StepSettings& settings)
       alpha_(settings.penalty),
       solver_(model.variables()),
       mu_(m_, arma::fill::zeros),
-      rhs_(n_, arma::fill::zeros),
-      share_of_a_(n_, arma::fill::zeros),
-      time_terms_(drivers_.drive_linear() ? m_ : constraints_.quadratics(), arma::fill::zeros) {
+      rhs_(n_, arma::fill::zeros) {
   if (!model.linear_constraints().empty()) add_linear_constraints(model);
 }
 
@@ -42,33 +40,19 @@ void PenaltySystem::assemble() {
   if (forces_.stiffen()) forces_.add_to(T.memptr(), T.n_rows);
 }
 
-void PenaltySystem::begin_velocity_projection(const arma::vec& v) { penalty_product(v, rhs_); }
-
-void PenaltySystem::begin_acceleration_projection(const arma::vec& a) {
-  penalty_product(a, share_of_a_);
+void PenaltySystem::velocity_projection(const arma::vec& v) {
+  first_derivative(v, mu_);
+  take_away();
 }
 
-void PenaltySystem::penalty_product(const arma::vec& x, arma::vec& out) {
-  constraints_.multiply(x, mu_);
-  out.zeros();
-  add_product(-h_ * alpha_, constraints_.jacobian(), n_, m_, mu_.memptr(), out.memptr());
+void PenaltySystem::acceleration_projection(const arma::vec& v, const arma::vec& a) {
+  second_derivative(v, a, mu_);
+  take_away();
 }
 
-void PenaltySystem::velocity_projection(const arma::vec& x) {
-  if (drivers_.empty()) return;  // Eq. (6)
-  rates(x, time_terms_);
-  subtract_time_terms();
-}
-
-void PenaltySystem::acceleration_projection(const arma::vec& x, const arma::vec& v) {
-  rhs_ = share_of_a_;  // Eq. (6)
-  accelerations(x, v, time_terms_);
-  subtract_time_terms();
-}
-
-void PenaltySystem::subtract_time_terms() {
-  const auto rows = static_cast<arma::blas_int>(time_terms_.n_elem);
-  add_product(-h_ * alpha_, constraints_.jacobian(), n_, rows, time_terms_.memptr(), rhs_.memptr());
+void PenaltySystem::take_away() {
+  rhs_.zeros();
+  add_product(-h_ * alpha_, constraints_.jacobian(), n_, m_, mu_.memptr(), rhs_.memptr());
 }
 
 }  // namespace mbs::armadillo_dense

@@ -28,32 +28,25 @@ class PenaltySystem : public Assembly {
   void solve() { solver_.solve(rhs_); }
   /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return rhs_; }
-  /// lambda (m) after a pass, with Phi of the last evaluate().
-  void update(arma::vec& lambda) const { lambda += alpha_ * constraints_.phi(); }  // Eq. (1)
+  /// lambda (m) after a pass: with the last solution, then with Phi of the last evaluate().
+  void take_solution(arma::vec& /*lambda*/) const {}
+  void take_constraints(arma::vec& lambda) const { lambda += alpha_ * constraints_.phi(); }  // (1)
 
-  /// Products of v*, a* (n) with J, the Phi_q of the matrix: to be taken before the evaluate() at
-  /// the final q'.
-  void begin_velocity_projection(const arma::vec& v);
-  void begin_acceleration_projection(const arma::vec& a);
-  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*, with v'.
-  void velocity_projection(const arma::vec& x);
-  void acceleration_projection(const arma::vec& x, const arma::vec& v);
+  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*, with v*, then with v' and a* (n).
+  void velocity_projection(const arma::vec& v);
+  void acceleration_projection(const arma::vec& v, const arma::vec& a);
 
  private:
   void add_linear_constraints(const Model& model);
-  /// out (n) = -h α Jᵀ J x, with Phi_q of the last evaluate() for J.
-  void penalty_product(const arma::vec& x, arma::vec& out);
-  /// rhs_ -= h α Φqᵀ time_terms_.
-  void subtract_time_terms();
+  /// rhs_ = -h α Φqᵀ mu_, Eq. (6).
+  void take_away();
 
   double alpha_;  ///< penalty factor
   CholeskySolver solver_;
   arma::mat constant_;  ///< n x n, lower triangle of M + h α Φqᵀ Φq of linear constraints; empty
                         ///< without them
-  arma::vec mu_;          ///< m, lambda + alpha Phi, then J v*, J a*
-  arma::vec rhs_;         ///< n, right-hand side, then solution
-  arma::vec share_of_a_;  ///< n, -h α Jᵀ J a*
-  arma::vec time_terms_;  ///< of the rows that can be nonzero: Φt, then Φ̇q v' + Φ̇t
+  arma::vec mu_;   ///< m, lambda + alpha Phi, then derivatives of Phi by time
+  arma::vec rhs_;  ///< n, right-hand side, then solution
 };
 
 }  // namespace mbs::armadillo_dense

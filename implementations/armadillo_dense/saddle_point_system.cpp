@@ -13,9 +13,7 @@ SaddlePointSystem::SaddlePointSystem(const Model& model, const StepSettings& set
       solver_(n_ + m_),
       rhs_(n_ + m_, arma::fill::zeros),
       multipliers_(rhs_.memptr(), m_, false, true),
-      coordinates_(rhs_.memptr() + m_, n_, false, true),
-      Jv_(m_, arma::fill::zeros),
-      Ja_(m_, arma::fill::zeros) {}
+      coordinates_(rhs_.memptr() + m_, n_, false, true) {}
 
 void SaddlePointSystem::residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                                  const arma::vec& lambda) {
@@ -39,20 +37,16 @@ void SaddlePointSystem::assemble() {
   if (forces_.stiffen()) forces_.add_to(A.colptr(m) + m, A.n_rows);
 }
 
-void SaddlePointSystem::velocity_projection(const arma::vec& x) {
+void SaddlePointSystem::velocity_projection(const arma::vec& v) {
   coordinates_.zeros();  // Eq. (13)
-  if (drivers_.empty()) {
-    multipliers_ = -Jv_;
-  } else {
-    rates(x, multipliers_);
-    multipliers_ = -(multipliers_ + Jv_);
-  }
+  first_derivative(v, multipliers_);
+  multipliers_ *= -1.0;
 }
 
-void SaddlePointSystem::acceleration_projection(const arma::vec& x, const arma::vec& v) {
+void SaddlePointSystem::acceleration_projection(const arma::vec& v, const arma::vec& a) {
   coordinates_.zeros();  // Eq. (13)
-  accelerations(x, v, multipliers_);
-  multipliers_ = -(multipliers_ + Ja_);
+  second_derivative(v, a, multipliers_);
+  multipliers_ *= -1.0;
 }
 
 }  // namespace mbs::armadillo_dense

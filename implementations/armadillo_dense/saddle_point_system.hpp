@@ -25,16 +25,13 @@ class SaddlePointSystem : public Assembly {
   void solve() { solver_.solve(rhs_); }
   /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return coordinates_; }
-  /// lambda (m) after a pass, with the last solution.
-  void update(arma::vec& lambda) const { lambda += 1.0 / h_ * multipliers_; }
+  /// lambda (m) after a pass: with the last solution, then with Phi of the last evaluate().
+  void take_solution(arma::vec& lambda) const { lambda += 1.0 / h_ * multipliers_; }
+  void take_constraints(arma::vec& /*lambda*/) const {}
 
-  /// Products of v*, a* (n) with J, the Phi_q of the matrix: to be taken before the evaluate() at
-  /// the final q'.
-  void begin_velocity_projection(const arma::vec& v) { constraints_.multiply(v, Jv_); }
-  void begin_acceleration_projection(const arma::vec& a) { constraints_.multiply(a, Ja_); }
-  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*, with v'.
-  void velocity_projection(const arma::vec& x);
-  void acceleration_projection(const arma::vec& x, const arma::vec& v);
+  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*, with v*, then with v' and a* (n).
+  void velocity_projection(const arma::vec& v);
+  void acceleration_projection(const arma::vec& v, const arma::vec& a);
 
  private:
   double epsilon_;
@@ -42,7 +39,6 @@ class SaddlePointSystem : public Assembly {
   arma::vec rhs_;          ///< n + m, right-hand side, then solution
   arma::vec multipliers_;  ///< the first m of rhs_, in its memory
   arma::vec coordinates_;  ///< the other n
-  arma::vec Jv_, Ja_;      ///< m, J v* and J a*
 };
 
 }  // namespace mbs::armadillo_dense

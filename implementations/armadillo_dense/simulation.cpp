@@ -58,15 +58,15 @@ StepOutcome DenseSimulation<System>::do_step() {
     system_.solve();  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
+    system_.take_solution(lambda_);
     if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
-      begin_projections();
+      project();  // with the Phi_q of the matrix
     }
     phases_.enter(Phase::evaluation);
     system_.evaluate(q_);
     phases_.enter(Phase::other);
-    system_.update(lambda_);
+    system_.take_constraints(lambda_);
   }
-  project();
   return outcome;
 }
 
@@ -109,30 +109,19 @@ bool DenseSimulation<System>::correct() {
 }
 
 template <class System>
-void DenseSimulation<System>::begin_projections() {
-  if (settings_.projections == Projections::none) return;
-  phases_.enter(Phase::projection);
-  system_.begin_velocity_projection(v_);
-  if (settings_.projections == Projections::both) system_.begin_acceleration_projection(a_);
-}
-
-template <class System>
 void DenseSimulation<System>::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  system_.velocity_projection(q_);
+  system_.velocity_projection(v_);
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::projection);
   for (arma::uword i = 0; i < n_; ++i) v_[i] += system_.solution()[i];
-  if (settings_.projections == Projections::velocity) {
-    phases_.enter(Phase::other);
-    return;
-  }
-  system_.acceleration_projection(q_, v_);
+  if (settings_.projections == Projections::velocity) return;
+  system_.acceleration_projection(v_, a_);
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
-  phases_.enter(Phase::other);
+  phases_.enter(Phase::projection);
   a_ += system_.solution();
 }
 

@@ -25,9 +25,7 @@ class DenseSimulation final : public mbs::Simulation {
   void predict();
   /// Applies the solution Δq to q', v' and a'; whether max|Δq| <= tolerance (false with a NaN).
   [[nodiscard]] bool correct();
-  /// Eq. (6) or (13) as far as settings ask for it: begun after the last correction, done once
-  /// Phi_q is that of the final q'.
-  void begin_projections();
+  /// Eq. (6) or (13) as far as settings ask for it, while Phi_q is that of the matrix.
   void project();
 
   StepSettings settings_;
