@@ -31,12 +31,23 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, std::vector
       drivers_(model, settings, coordinates_, lowered_, force_),
       row_(lowered_.rows()) {}
 
-void Assembly::drive(double t, double* q, double* u) {
-  drivers_.drive(t, q, u, constraints_.target(), force_.data());
+void Assembly::drive(double t, double* q, double* u, double* s) {
+  drivers_.drive(t, q, u, s, constraints_.target(), force_.data());
   forces_.drive(t);
 }
 
+void Assembly::take_first_rate(const double* u) {
+  constraints_.first_rate(u, row_.data());
+  for (const DrivenTarget& d : drivers_.targets()) row_[d.row] -= d.rate;
+}
+
+void Assembly::take_second_rate(const double* u, const double* s) {
+  constraints_.second_rate(u, s, row_.data());  // (dt^2/4) v v = u u
+  for (const DrivenTarget& d : drivers_.targets()) row_[d.row] -= d.acceleration;
+}
+
 void Assembly::balance(const double* q, const double* u, const double* s, double* result) {
+  constraints_.evaluate_jacobian();
   mass_.subtract_product(force_.data(), s, result);
   add_row_forces(result);
   if (!forces_.empty()) {
@@ -48,13 +59,6 @@ void Assembly::balance(const double* q, const double* u, const double* s, double
 void Assembly::add_row_forces(double* result) {
   constraints_.multiply(row_.data());
   rows_schedule_.sum(result, constraints_.forces(), result);
-}
-
-void Assembly::add_velocity_terms(const double* q, const double* u, double factor, double* result) {
-  constraints_.add_velocity_terms(u, factor, result);  // (dt^2/4) v v = u u
-  for (const DrivenRow& row : drivers_.rows()) {
-    result[row.row] += factor * drivers_.acceleration(row, q);
-  }
 }
 
 }  // namespace mbs::csc_cholmod

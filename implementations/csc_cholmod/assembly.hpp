@@ -28,25 +28,27 @@ class Assembly {
 
   [[nodiscard]] bool has_drivers() const { return !drivers_.empty() || forces_.is_driven(); }
   /// Samples the drivers and factors of laws at time t, for the whole step; writes their places of
-  /// q and u.
-  void drive(double t, double* q, double* u);
-  /// Phi and Phi_q at q; every other call works with them.
+  /// q, u and s.
+  void drive(double t, double* q, double* u, double* s);
+  /// Phi at q; every other call works at this q.
   void evaluate(const double* q) {
-    constraints_.evaluate_jacobian(q);
+    constraints_.take(q);
     constraints_.evaluate_phi(q);
   }
+  /// Eqs. (6), (13): row_ = (dt/2) (Phi_q v + Phi_t), with the Phi_q in the matrix.
+  void take_first_rate(const double* u);
+  /// Likewise row_ = (dt^2/4) (Phi_q a + Phi-dot_q v + Phi-dot_t), once before evaluate().
+  void take_second_rate(const double* u, const double* s);
 
  protected:
   /// Unknown i of the model becomes `number[i]`, and M is stored as `half`.
   Assembly(const Model& model, const StepSettings& settings, std::vector<int> number, Half half);
   ~Assembly() = default;
 
-  /// result (n) = (dt^2/4) Q - M s + Phi_q^T row_; takes the force elements at q and u.
+  /// result (n) = (dt^2/4) Q - M s + Phi_q^T row_; takes Phi_q, and the force elements at q and u.
   void balance(const double* q, const double* u, const double* s, double* result);
   /// result (n) += Phi_q^T row_.
   void add_row_forces(double* result);
-  /// result (rows) += factor * (dt^2/4) (Phi-dot_q v + Phi-dot_t).
-  void add_velocity_terms(const double* q, const double* u, double factor, double* result);
 
   double quarter_;  ///< dt^2/4, s^2
   Coordinates coordinates_;

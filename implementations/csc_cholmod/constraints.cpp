@@ -1,21 +1,22 @@
 // Straight loops over the flat arrays of the lowered constraints.
 #include "constraints.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace mbs::csc_cholmod {
 namespace {
 
-/// result (rows) += factor * the linear rows of Phi_q times x. Inlined: a call at the end of a
-/// vectorised function would leave the upper halves of vector registers set (GCC), and CHOLMOD's
-/// scalar code is slower then.
+/// result (rows) += the linear rows of Phi_q times x. Inlined: a call at the end of a vectorised
+/// function would leave the upper halves of vector registers set (GCC), and CHOLMOD's scalar code
+/// is slower then.
 [[gnu::always_inline]] inline void add_linear_product(const LinearBlock& linear, const double* x,
-                                                      double factor, double* __restrict result) {
+                                                      double* __restrict result) {
   result += linear.first_row;
   for (int k = 0; k < linear.count; ++k) {
     double sum = result[k];
     for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
-      sum += factor * linear.coefficient[t] * x[linear.column[t]];
+      sum += linear.coefficient[t] * x[linear.column[t]];
     }
     result[k] = sum;
   }
@@ -31,7 +32,7 @@ Constraints::Constraints(const LoweredConstraints& lowered)
       pairs_(lowered.pairs.begin(), lowered.pairs.end()),
       forces_(2 * lowered.values() + lowered.linear.column.size()) {}
 
-void Constraints::evaluate_jacobian(const double* q) {
+void Constraints::take(const double* q) {
   const DistanceBlock& distance = lowered_.distance;
   double* __restrict values = values_.data();
   const int* plus = distance.plus.data();
@@ -39,10 +40,11 @@ void Constraints::evaluate_jacobian(const double* q) {
   const int elements = lowered_.dimension * distance.count;
 #pragma GCC unroll 4  // else a third of the loop counts
   for (int e = 0; e < elements; ++e) values[e] = 2.0 * (q[plus[e]] - q[minus[e]]);  // Eq. (7)
-  for (PairValues& block : pairs_) {
-    block.take(q);
-    block.write_jacobian(values);
-  }
+  for (PairValues& block : pairs_) block.take(q);
+}
+
+void Constraints::evaluate_jacobian() {  // take() has written those of distances
+  for (const PairValues& block : pairs_) block.write_jacobian(values_.data());
 }
 
 void Constraints::evaluate_phi(const double* q) {
@@ -57,38 +59,36 @@ void Constraints::evaluate_phi(const double* q) {
     }
   }
   for (const PairValues& block : pairs_) block.add_products(1.0, phi);  // Eq. (7)
-  add_linear_product(lowered_.linear, q, 1.0, phi);                     // Eq. (8)
+  add_linear_product(lowered_.linear, q, phi);                          // Eq. (8)
 }
 
-void Constraints::add_jacobian_product(const double* x, double factor,
-                                       double* __restrict result) const {
+void Constraints::first_rate(const double* v, double* __restrict result) const {
   const DistanceBlock& distance = lowered_.distance;
   const double* values = values_.data();
   const int* plus = distance.plus.data();
   const int* minus = distance.minus.data();
+  std::fill_n(result, lowered_.rows(), 0.0);
   for (int axis = 0; axis < lowered_.dimension; ++axis) {
-    for (int k = 0; k < distance.count; ++k) {
-      result[k] += factor * *values++ * (x[*plus++] - x[*minus++]);
-    }
+    for (int k = 0; k < distance.count; ++k) result[k] += *values++ * (v[*plus++] - v[*minus++]);
   }
-  for (const PairValues& block : pairs_) block.add_jacobian_product(x, factor, result);
-  add_linear_product(lowered_.linear, x, factor, result);
+  for (const PairValues& block : pairs_) block.add_rates(v, result);
+  add_linear_product(lowered_.linear, v, result);
 }
 
-void Constraints::add_velocity_terms(const double* v, double factor, double* __restrict result) {
+void Constraints::second_rate(const double* v, const double* a, double* __restrict result) {
+  first_rate(a, result);
   const DistanceBlock& distance = lowered_.distance;
   const int* plus = distance.plus.data();
   const int* minus = distance.minus.data();
-  const double twice = 2.0 * factor;  // Eq. (7)
   for (int axis = 0; axis < lowered_.dimension; ++axis) {
     for (int k = 0; k < distance.count; ++k) {
       const double difference = v[*plus++] - v[*minus++];
-      result[k] += twice * difference * difference;
+      result[k] += 2.0 * difference * difference;  // Eq. (7)
     }
   }
   for (PairValues& block : pairs_) {
     block.take(v);
-    block.add_products(twice, result);
+    block.add_products(2.0, result);  // Eq. (7)
   }
 }
 
@@ -142,20 +142,6 @@ void Constraints::multiply_pairs(double factor, double* products) const {
       *plus++ = product;
       *minus++ = -product;
     }
-  }
-}
-
-void Constraints::add_row(int row, double x, double* result) const {
-  const LinearBlock& linear = lowered_.linear;
-  if (row < linear.first_row) {
-    for (const SignedEntry& e : lowered_.entries()[row]) {
-      result[e.column] += (e.negative ? -x : x) * values_[e.value];
-    }
-    return;
-  }
-  const int k = row - linear.first_row;
-  for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
-    result[linear.column[t]] += x * linear.coefficient[t];
   }
 }
 

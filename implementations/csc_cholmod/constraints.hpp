@@ -16,22 +16,22 @@ class Constraints {
   /// `lowered` must outlive this.
   explicit Constraints(const LoweredConstraints& lowered);
 
-  /// The Jacobian values from the coordinates q (all places, m). Eq. (7)
-  void evaluate_jacobian(const double* q);
-  /// Phi (rows) at the q of the last evaluate_jacobian(). Eqs. (7), (8)
+  /// Takes differences of the coordinates q (all places, m).
+  void take(const double* q);
+  /// The Jacobian values at the q taken last. Eq. (7)
+  void evaluate_jacobian();
+  /// Phi (rows) at the q taken last. Eqs. (7), (8)
   void evaluate_phi(const double* q);
-  /// result (rows) += factor * Phi_q x, at the q of the last evaluate_jacobian(); x (all places) is
-  /// zero behind the unknowns. Not after add_velocity_terms(), which takes the place of u and w.
-  void add_jacobian_product(const double* x, double factor, double* result) const;
-  /// result (rows) += factor * what velocities v (all places) alone give of Phi-double-dot.
-  void add_velocity_terms(const double* v, double factor, double* result);
+  /// result (rows) = Phi-dot at the q taken last, for velocities v (all places) and constant s.
+  void first_rate(const double* v, double* result) const;
+  /// result (rows) = Phi-double-dot, likewise with accelerations a (all places). Takes v in the
+  /// place of q.
+  void second_rate(const double* v, const double* a, double* result);
   /// Each Jacobian value times the x (rows) of its row: the summands of Phi_q^T x.
   void multiply(const double* x);
   /// products = factor times each product of two values, then the same negated: the summands of
   /// factor * Phi_q^T Phi_q.
   void multiply_pairs(double factor, double* products) const;
-  /// result (n) += x times one row of Phi_q.
-  void add_row(int row, double x, double* result) const;
 
   [[nodiscard]] const double* values() const { return values_.data(); }
   [[nodiscard]] const double* phi() const { return phi_.data(); }

@@ -13,7 +13,7 @@ using Places = std::array<int, 3>;
 
 /// The n unknowns in an order of their own, then constants: 0 and 1, then the coordinates of fixed
 /// points. A difference r_a - r_b so reads two entries whether a point is fixed or not; vectors of
-/// velocities hold zeros behind the unknowns, but for driven points.
+/// velocities and accelerations hold zeros behind the unknowns, but for driven points.
 class Coordinates {
  public:
   /// `number[i]` is the place of the model's unknown i.

@@ -1,7 +1,6 @@
-// Known functions of time: driven points and values, and what they add to Eq. (6) and to Q.
+// Known functions of time: driven points and values, and what driven mass adds to Q.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -12,12 +11,10 @@
 
 namespace mbs::csc_cholmod {
 
-/// A row of Phi that depends on time through points or through its value s.
-struct DrivenRow {
+/// The value s of a row of Phi.
+struct DrivenTarget {
   int row = 0;
-  bool moves = false;          ///< with a driven point: u . B w = s
-  std::array<int, 4> point{};  ///< a, b, c, d
-  const Matrix* B = nullptr;
+  const TimeFunction* function = nullptr;
   double rate = 0.0;          ///< (dt/2) s'
   double acceleration = 0.0;  ///< (dt^2/4) s''
 };
@@ -30,47 +27,27 @@ class Drivers {
   Drivers(const Model& model, const StepSettings& settings, const Coordinates& coordinates,
           const LoweredConstraints& lowered, const std::vector<double>& force);
 
-  [[nodiscard]] bool empty() const { return points_.empty() && values_.empty(); }
-  /// Samples at time t: positions into q and velocities into u (all places), values into target
-  /// (rows), and what driven mass gives into force (n).
-  void drive(double t, double* q, double* u, double* target, double* force);
+  [[nodiscard]] bool empty() const { return points_.empty() && targets_.empty(); }
+  /// Samples at time t: positions, velocities and accelerations of points into q, u and s (all
+  /// places), values into target (rows), and what driven mass gives into force (n).
+  void drive(double t, double* q, double* u, double* s, double* target, double* force);
 
-  [[nodiscard]] std::span<const DrivenRow> rows() const { return rows_; }
-  /// (dt/2) Phi_t of a row at q (all places).
-  [[nodiscard]] double rate(const DrivenRow& row, const double* q) const {
-    return terms(row, q, rates_) - row.rate;
-  }
-  /// (dt^2/4) times what accelerations of drivers alone give of Phi-double-dot.
-  [[nodiscard]] double acceleration(const DrivenRow& row, const double* q) const {
-    return terms(row, q, accelerations_) - row.acceleration;
-  }
+  [[nodiscard]] std::span<const DrivenTarget> targets() const { return targets_; }
 
  private:
-  struct Value {
-    int driven_row = 0;
-    const TimeFunction* function = nullptr;
-  };
   struct Mass {
     int place = 0;
-    int source = 0;  ///< in accelerations_
+    int source = 0;  ///< the place of the point's coordinate
     double value = 0.0;
     double force = 0.0;  ///< the constant part
   };
-  void add_rows(const Model& model, const LoweredConstraints& lowered);
-  void add_mass(const Model& model, const std::vector<double>& force);
-  [[nodiscard]] double terms(const DrivenRow& row, const double* q,
-                             const std::vector<double>& motion) const;
 
   const Coordinates& coordinates_;
   double half_;     ///< dt/2, s
   double quarter_;  ///< dt^2/4, s^2
   std::span<const DrivenPoint> points_;
-  std::vector<Value> values_;
-  std::vector<DrivenRow> rows_;
+  std::vector<DrivenTarget> targets_;
   std::vector<Mass> mass_;
-  // Of all places behind the unknowns; zero but for driven points.
-  std::vector<double> rates_;          ///< (dt/2) velocity, m
-  std::vector<double> accelerations_;  ///< (dt^2/4) acceleration, m
 };
 
 }  // namespace mbs::csc_cholmod

@@ -87,7 +87,8 @@ void CscOperations::set_coordinates(std::span<const double> q) {
 }
 
 void CscOperations::evaluate_jacobian() {
-  constraints_.evaluate_jacobian(q_.data());  // Eqs. (7), (8)
+  constraints_.take(q_.data());
+  constraints_.evaluate_jacobian();  // Eqs. (7), (8)
   jacobian_.refresh(constraints_.values());
 }
 

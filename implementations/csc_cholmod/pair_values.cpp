@@ -55,14 +55,14 @@ void PairValues::add_products(double factor, double* result) const {
   }
 }
 
-void PairValues::add_jacobian_product(const double* x, double factor, double* result) const {
+void PairValues::add_rates(const double* v, double* result) const {
   const double* of_u = Btu();
   const double* of_w = Bw();
   double* __restrict rows = result + block_.first.row;
   for (int e = 0, axis = 0; axis < block_.dimension; ++axis) {
     for (int k = 0; k < block_.count; ++k, ++e) {
-      rows[k] += factor * (of_w[e] * (x[block_.a[e]] - x[block_.b[e]]) +  // Eq. (7)
-                           of_u[e] * (x[block_.c[e]] - x[block_.d[e]]));
+      rows[k] += of_w[e] * (v[block_.a[e]] - v[block_.b[e]]) +  // Eq. (7)
+                 of_u[e] * (v[block_.c[e]] - v[block_.d[e]]);
     }
   }
 }

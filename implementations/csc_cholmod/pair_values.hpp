@@ -19,8 +19,8 @@ class PairValues {
   void write_jacobian(double* values) const;
   /// result (all rows) += factor * u . B w.
   void add_products(double factor, double* result) const;
-  /// result (all rows) += factor * the block's rows of Phi_q times x (all places).
-  void add_jacobian_product(const double* x, double factor, double* result) const;
+  /// result (all rows) += the rates of u . B w for velocities v (all places).
+  void add_rates(const double* v, double* result) const;
 
  private:
   [[nodiscard]] const double* Bw() const { return Bw_.empty() ? w_.data() : Bw_.data(); }

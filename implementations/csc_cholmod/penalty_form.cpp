@@ -55,24 +55,10 @@ void PenaltyForm::update_multipliers(double* lambda) const {
   for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];  // Eq. (1)
 }
 
-void PenaltyForm::begin_projection(const double* x, double* right) {
-  std::fill(row_.begin(), row_.end(), 0.0);
-  constraints_.add_jacobian_product(x, -quarter_ * penalty_, row_.data());
+void PenaltyForm::projection(double* right) {
+  for (double& rate : row_) rate *= -quarter_ * penalty_;
   std::fill_n(right, size(), 0.0);
   add_row_forces(right);  // Eq. (6)
-}
-
-void PenaltyForm::complete_velocity(const double* q, double* velocity) {
-  for (const DrivenRow& row : drivers_.rows()) {
-    const double factor = -quarter_ * penalty_ * drivers_.rate(row, q);  // Eq. (6)
-    constraints_.add_row(row.row, factor, velocity);
-  }
-}
-
-void PenaltyForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
-  std::fill(row_.begin(), row_.end(), 0.0);
-  add_velocity_terms(q, u, -quarter_ * penalty_, row_.data());
-  add_row_forces(acceleration);  // Eq. (6)
 }
 
 }  // namespace mbs::csc_cholmod

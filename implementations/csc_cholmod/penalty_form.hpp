@@ -25,16 +25,13 @@ class PenaltyForm : public Assembly {
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
   /// x (n) = T \ right.
   void solve(const double* right, double* x) { solver_.solve(right, x); }
+  /// They take Phi at the new q.
+  static constexpr bool kMultipliersFromSolution = false;
   /// lambda (rows) += alpha Phi.
   void update_multipliers(double* lambda) const;
 
-  /// Eq. (6): right = -(dt^2/4) alpha J^T J x of x = u or s, zero behind the unknowns; with the
-  /// Phi_q that is in T, so before evaluate().
-  void begin_projection(const double* x, double* right);
-  /// Eq. (6): velocity -= (dt^2/4) alpha Phi_q^T (dt/2) Phi_t.
-  void complete_velocity(const double* q, double* velocity);
-  /// Eq. (6): acceleration -= (dt^2/4)^2 alpha Phi_q^T (Phi-dot_q v + Phi-dot_t).
-  void complete_acceleration(const double* q, const double* u, double* acceleration);
+  /// Eq. (6): right = -(dt^2/4) alpha Phi_q^T times the rate taken last.
+  void projection(double* right);
 
  private:
   PenaltyForm(const Model& model, const StepSettings& settings, const HalfPattern& pattern,

@@ -62,18 +62,9 @@ void SaddleForm::update_multipliers(double* lambda) const {
   }
 }
 
-void SaddleForm::begin_projection(const double* x, double* right) {
-  std::fill_n(right, size(), 0.0);
-  constraints_.add_jacobian_product(x, -1.0, right + coordinates_.unknowns());  // Eq. (13)
-}
-
-void SaddleForm::complete_velocity(const double* q, double* velocity) {
-  double* rows = velocity + coordinates_.unknowns();
-  for (const DrivenRow& row : drivers_.rows()) rows[row.row] -= drivers_.rate(row, q);  // Eq. (13)
-}
-
-void SaddleForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
-  add_velocity_terms(q, u, -1.0, acceleration + coordinates_.unknowns());  // Eq. (13)
+void SaddleForm::projection(double* right) const {
+  double* __restrict rows = std::fill_n(right, coordinates_.unknowns(), 0.0);
+  for (std::size_t k = 0; k < row_.size(); ++k) rows[k] = -row_[k];  // Eq. (13)
 }
 
 }  // namespace mbs::csc_cholmod

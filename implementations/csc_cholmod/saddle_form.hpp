@@ -26,16 +26,13 @@ class SaddleForm : public Assembly {
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
   /// x (n) = what the matrix \ right has of the unknowns; the rest is kept.
   void solve(const double* right, double* x);
+  /// They take mu, before another solve().
+  static constexpr bool kMultipliersFromSolution = true;
   /// lambda (rows) += (4/dt^2) mu, with what the last solve() kept.
   void update_multipliers(double* lambda) const;
 
-  /// Eq. (13): right = 0 and -J x of x = u or s, zero behind the unknowns; with the Phi_q that is
-  /// in the matrix, so before evaluate().
-  void begin_projection(const double* x, double* right);
-  /// Eq. (13): the rows of velocity -= (dt/2) Phi_t.
-  void complete_velocity(const double* q, double* velocity);
-  /// Eq. (13): the rows of acceleration -= (dt^2/4) (Phi-dot_q v + Phi-dot_t).
-  void complete_acceleration(const double* q, const double* u, double* acceleration);
+  /// Eq. (13): right = 0 and minus the rate taken last.
+  void projection(double* right) const;
 
  private:
   SaddleForm(const Model& model, const StepSettings& settings, Method method,

@@ -20,10 +20,9 @@ CholmodSimulation<Form>::CholmodSimulation(const Model& model, const StepSetting
       a_(model.variables()),
       u_(form_.coordinates().all()),
       s_(form_.coordinates().all()),
-      delta_(form_.coordinates().all()),
+      delta_(model.variables()),
       lambda_(model.constraints()),
-      right_(form_.size()),
-      second_right_(form_.size()) {
+      right_(form_.size()) {
   const std::vector<double>& constants = form_.coordinates().constants();
   std::copy(constants.begin(), constants.end(), q_.begin() + model.variables());
 }
@@ -56,7 +55,7 @@ void CholmodSimulation<Form>::do_get_state(State& state) const {
 
 template <typename Form>
 StepOutcome CholmodSimulation<Form>::do_step() {
-  if (form_.has_drivers()) form_.drive(time(), q_.data(), u_.data());
+  if (form_.has_drivers()) form_.drive(time(), q_.data(), u_.data(), s_.data());
   predict();
   phases_.enter(Phase::evaluation);
   form_.evaluate(q_.data());
@@ -75,15 +74,22 @@ StepOutcome CholmodSimulation<Form>::do_step() {
     form_.solve(right_.data(), delta_.data());  // Eq. (4), (12)
     phases_.enter(Phase::other);
     if (update()) outcome.status = StepStatus::converged;
+    if (Form::kMultipliersFromSolution) form_.update_multipliers(lambda_.data());
     if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
-      begin_projections();
+      project();
+      if (Form::kMultipliersFromSolution) break;
     }
     phases_.enter(Phase::evaluation);
-    form_.evaluate(q_.data());  // serves the multipliers, the next pass and the projections
-    form_.update_multipliers(lambda_.data());
+    form_.evaluate(q_.data());  // serves the multipliers and the next pass
+    if (!Form::kMultipliersFromSolution) form_.update_multipliers(lambda_.data());
   }
-  project();
   phases_.enter(Phase::other);
+  const double per_half = 2.0 / settings_.step;
+  const double per_quarter = per_half * per_half;
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    v_[i] = per_half * u_[i];
+    a_[i] = per_quarter * s_[i];
+  }
   return outcome;
 }
 
@@ -123,40 +129,21 @@ bool CholmodSimulation<Form>::update() {
 }
 
 template <typename Form>
-void CholmodSimulation<Form>::begin_projections() {
+void CholmodSimulation<Form>::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  std::copy_n(u_.begin(), v_.size(), delta_.begin());  // driven points have no columns
-  form_.begin_projection(delta_.data(), right_.data());
+  form_.take_first_rate(u_.data());
+  correct(u_);
   if (settings_.projections != Projections::both) return;
-  form_.begin_projection(s_.data(), second_right_.data());
+  form_.take_second_rate(u_.data(), s_.data());
+  correct(s_);
 }
 
 template <typename Form>
-void CholmodSimulation<Form>::project() {
-  if (settings_.projections != Projections::none) {
-    phases_.enter(Phase::projection);
-    form_.complete_velocity(q_.data(), right_.data());
-    correct(right_, u_);
-  }
-  if (settings_.projections == Projections::both) {
-    phases_.enter(Phase::projection);
-    form_.complete_acceleration(q_.data(), u_.data(), second_right_.data());
-    correct(second_right_, s_);
-  }
-  phases_.enter(Phase::other);
-  const double per_half = 2.0 / settings_.step;
-  const double per_quarter = per_half * per_half;
-  for (std::size_t i = 0; i < v_.size(); ++i) {
-    v_[i] = per_half * u_[i];
-    a_[i] = per_quarter * s_[i];
-  }
-}
-
-template <typename Form>
-void CholmodSimulation<Form>::correct(const std::vector<double>& right, std::vector<double>& x) {
+void CholmodSimulation<Form>::correct(std::vector<double>& x) {
+  form_.projection(right_.data());
   phases_.enter(Phase::solve);
-  form_.solve(right.data(), delta_.data());  // Eq. (6), (13)
+  form_.solve(right_.data(), delta_.data());  // Eq. (6), (13)
   phases_.enter(Phase::projection);
   for (std::size_t i = 0; i < v_.size(); ++i) x[i] += delta_[i];
 }

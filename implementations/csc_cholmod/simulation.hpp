@@ -28,21 +28,18 @@ class CholmodSimulation final : public Simulation {
   void predict();
   /// q, u, s grow by Delta q. True if max |Delta q| <= tolerance; NaN is false.
   bool update();
-  /// Right-hand sides of the projections as far as the Phi_q in the matrix gives them: after the
-  /// last correction, before Phi_q is evaluated anew.
-  void begin_projections();
+  /// Eqs. (6), (13): after the last correction, before Phi is evaluated at the new q.
   void project();
-  /// x (n) += the matrix \ right.
-  void correct(const std::vector<double>& right, std::vector<double>& x);
+  /// x (n) += the projection for the rate that form_ took last.
+  void correct(std::vector<double>& x);
 
   StepSettings settings_;
   Form form_;
-  // All places for q, u, s and delta (constants and driven points behind the unknowns; zeros in s
-  // and delta), else n.
+  // All places for q, u and s (constants and driven points behind the unknowns), else n.
   std::vector<double> q_, v_, a_;
   std::vector<double> u_, s_, delta_;
-  std::vector<double> lambda_;                ///< rows
-  std::vector<double> right_, second_right_;  ///< form_.size()
+  std::vector<double> lambda_;  ///< rows
+  std::vector<double> right_;   ///< form_.size()
 };
 
 }  // namespace mbs::csc_cholmod
