@@ -47,17 +47,9 @@ Constraints<D>::Constraints(const Model& model, const Slots& slots) {
   }
   first_.push_back(static_cast<int>(slot_.size()));
 
-  // Driven values and rows with driven points.
-  std::vector<bool> driven_slot(slots.total);
-  for (const DrivenPoint& driven : model.driven_points()) {
-    for (int i = 0; i < D; ++i) driven_slot[slots.of[driven.point] + i] = true;
-  }
-  std::vector<int> function(count(), -1);  // by row of the model
-  functions_.reserve(model.driven_values().size());
-  for (const DrivenValue& driven : model.driven_values()) {
-    function[driven.constraint] = static_cast<int>(functions_.size());
-    functions_.push_back({driven.value, nullptr, {}});
-  }
+  // Driven values.
+  std::vector<int> row_of(count());  // by row of the model
+  for (int k = 0; k < count(); ++k) row_of[order_[k]] = k;
   const auto value_of = [&](int k) -> double* {
     std::size_t index = k;
     if (index < distances_.size()) return &distances_[index].value;
@@ -67,14 +59,9 @@ Constraints<D>::Constraints(const Model& model, const Slots& slots) {
     if (index < bilinear_.size()) return &bilinear_[index].dot.value;
     return &linear_[index - bilinear_.size()].value;
   };
-  for (int k = 0; k < count(); ++k) {
-    DrivenRow row{k, static_cast<int>(fixed_entries_.size()), 0, function[order_[k]]};
-    for (int e = first_[k]; e < first_[k + 1]; ++e) {
-      if (driven_slot[slot_[e]]) fixed_entries_.push_back(e);
-    }
-    row.end_fixed = static_cast<int>(fixed_entries_.size());
-    if (row.function >= 0) functions_[row.function].target = value_of(k);
-    if (row.function >= 0 || row.end_fixed > row.first_fixed) driven_rows_.push_back(row);
+  for (const DrivenValue& driven : model.driven_values()) {
+    const int row = row_of[driven.constraint];
+    functions_.push_back({row, driven.value, value_of(row), {}});
   }
 }
 
@@ -183,53 +170,28 @@ void Constraints<D>::multiply(const double* Phi_q, const double* x, double* y) c
 }
 
 template <int D>
-template <int Count>
-void Constraints<D>::add_products(double s, const double* Phi_q, const double* const (&x)[Count],
-                                  double* const (&y)[Count]) const {
-  for (const auto& [a, b, value] : distances_) {
-    double sum[Count] = {};
-    for (int i = 0; i < D; ++i) {
-      for (int r = 0; r < Count; ++r) sum[r] += Phi_q[i] * (x[r][a + i] - x[r][b + i]);
-    }
-    for (int r = 0; r < Count; ++r) sum[r] *= s;
-    for (int i = 0; i < D; ++i) {
-      for (int r = 0; r < Count; ++r) {
-        const double product = Phi_q[i] * sum[r];
-        y[r][a + i] += product;
-        y[r][b + i] -= product;
-      }
-    }
-    Phi_q += 2 * D;
-  }
-  for (std::size_t k = distances_.size(); k + 1 < first_.size(); ++k) {
-    const int* slot = slot_.data() + first_[k];
-    const int length = first_[k + 1] - first_[k];
-    double sum[Count] = {};
-    for (int e = 0; e < length; ++e) {
-      for (int r = 0; r < Count; ++r) sum[r] += Phi_q[e] * x[r][slot[e]];
-    }
-    for (int r = 0; r < Count; ++r) sum[r] *= s;
-    for (int e = 0; e < length; ++e) {
-      for (int r = 0; r < Count; ++r) y[r][slot[e]] += Phi_q[e] * sum[r];
-    }
-    Phi_q += length;
-  }
+void Constraints<D>::first_derivative(const double* Phi_q, const double* v, double* result) const {
+  multiply(Phi_q, v, result);
+  for (const Function& function : functions_) result[function.row] -= function.now.rate;
 }
 
 template <int D>
-void Constraints<D>::second_derivative(const double* v, double* result) const {
+void Constraints<D>::second_derivative(const double* Phi_q, const double* v,
+                                       const double* acceleration, double* result) const {
+  multiply(Phi_q, acceleration, result);
+  for (const Function& function : functions_) result[function.row] -= function.now.acceleration;
   for (const auto& [a, b, value] : distances_) {
     double sum = 0.0;
     for (int i = 0; i < D; ++i) {
       const double u = v[a + i] - v[b + i];
       sum += u * u;
     }
-    *result++ = 2 * sum;
+    *result++ += 2 * sum;
   }
   for (const auto& [a, b, c, d, value] : dots_) {
     double sum = 0.0;
     for (int i = 0; i < D; ++i) sum += (v[a + i] - v[b + i]) * (v[c + i] - v[d + i]);
-    *result++ = 2 * sum;
+    *result++ += 2 * sum;
   }
   for (const auto& [dot, B] : bilinear_) {
     double sum = 0.0;
@@ -238,43 +200,11 @@ void Constraints<D>::second_derivative(const double* v, double* result) const {
         sum += (v[dot.a + i] - v[dot.b + i]) * B[i][j] * (v[dot.c + j] - v[dot.d + j]);
       }
     }
-    *result++ = 2 * sum;
-  }
-  std::fill_n(result, linear_.size(), 0.0);
-}
-
-template <int D>
-void Constraints<D>::add_rates(const double* Phi_q, const double* fixed, double* result) const {
-  for (const DrivenRow& row : driven_rows_) {
-    double sum = row.function < 0 ? 0.0 : -functions_[row.function].now.rate;
-    for (int k = row.first_fixed; k < row.end_fixed; ++k) {
-      sum += Phi_q[fixed_entries_[k]] * fixed[slot_[fixed_entries_[k]]];
-    }
-    result[row.row] += sum;
-  }
-}
-
-template <int D>
-void Constraints<D>::add_accelerations(const double* Phi_q, const double* fixed,
-                                       double* result) const {
-  for (const DrivenRow& row : driven_rows_) {
-    double sum = row.function < 0 ? 0.0 : -functions_[row.function].now.acceleration;
-    for (int k = row.first_fixed; k < row.end_fixed; ++k) {
-      sum += Phi_q[fixed_entries_[k]] * fixed[slot_[fixed_entries_[k]]];
-    }
-    result[row.row] += sum;
+    *result++ += 2 * sum;
   }
 }
 
 template class Constraints<2>;
 template class Constraints<3>;
-template void Constraints<2>::add_products(double, const double*, const double* const (&)[1],
-                                           double* const (&)[1]) const;
-template void Constraints<2>::add_products(double, const double*, const double* const (&)[2],
-                                           double* const (&)[2]) const;
-template void Constraints<3>::add_products(double, const double*, const double* const (&)[1],
-                                           double* const (&)[1]) const;
-template void Constraints<3>::add_products(double, const double*, const double* const (&)[2],
-                                           double* const (&)[2]) const;
 
 }  // namespace mbs::hybrid_dense

@@ -18,9 +18,8 @@ class Constraints {
  public:
   Constraints(const Model& model, const Slots& slots);
 
-  /// Driven values, at time t; true if any constraint has a driven value or point.
+  /// Driven values, at time t.
   void drive(double t);
-  [[nodiscard]] bool driven() const { return !driven_rows_.empty(); }
 
   /// Phi and Phi_q at q.
   void evaluate(const double* q, double* Phi, double* Phi_q) const;
@@ -28,16 +27,11 @@ class Constraints {
   void add_forces(const double* Phi_q, const double* y, double* f) const;
   /// y = Phi_q x.
   void multiply(const double* Phi_q, const double* x, double* y) const;
-  /// y_r += s Phi_q^T Phi_q x_r for `Count` vectors at once.
-  template <int Count>
-  void add_products(double s, const double* Phi_q, const double* const (&x)[Count],
-                    double* const (&y)[Count]) const;
-  /// The part of the second derivative of Phi that is free of accelerations, without driven ones.
-  void second_derivative(const double* v, double* result) const;
-  /// With v (or a) of driven points alone in `fixed`: result += Phi_t (or its like of second
-  /// order).
-  void add_rates(const double* Phi_q, const double* fixed, double* result) const;
-  void add_accelerations(const double* Phi_q, const double* fixed, double* result) const;
+  /// Of Phi by time, with v and a of all points, driven ones too: Phi_q v + Phi_t, and
+  /// Phi_q a + Phi_dot_q v + Phi_dot_t.
+  void first_derivative(const double* Phi_q, const double* v, double* result) const;
+  void second_derivative(const double* Phi_q, const double* v, const double* acceleration,
+                         double* result) const;
 
   [[nodiscard]] int count() const { return static_cast<int>(order_.size()); }
   /// Entries of row k are firsts()[k] ... firsts()[k + 1] - 1; entry e is of the coordinate
@@ -67,11 +61,8 @@ class Constraints {
     int first, end;
     double value;
   };
-  struct DrivenRow {
-    int row, first_fixed, end_fixed;  // which of fixed_entries_ are of driven points
-    int function;                     // into functions_, -1: none
-  };
   struct Function {
+    int row;
     TimeFunction value;
     double* target;
     TimeFunction::Sample now;
@@ -83,9 +74,6 @@ class Constraints {
   std::vector<Linear> linear_;
   std::vector<double> coefficients_;  // of linear rows, one behind the other
   std::vector<int> first_, slot_, order_;
-
-  std::vector<DrivenRow> driven_rows_;
-  std::vector<int> fixed_entries_;
   std::vector<Function> functions_;
 };
 

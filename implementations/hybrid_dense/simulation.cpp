@@ -29,7 +29,7 @@ StepOutcome HybridSimulation<D, System>::do_step() {
   StepOutcome outcome{StepStatus::pass_limit};  // unless a pass converges
   predict();
   evaluate_constraints();
-  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+  for (bool last = false; !last;) {
     ++outcome.passes;
     evaluate_residual();
     phases_.enter(Phase::assembly);
@@ -44,19 +44,17 @@ StepOutcome HybridSimulation<D, System>::do_step() {
       system_.solve(Delta_q_.data());  // Eq. (4)
     }
     if (correct()) outcome.status = StepStatus::converged;
-    if (settings_.projections != Projections::none &&
-        (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes)) {
-      multiply_jacobian();
-    }
-    evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
-    phases_.enter(Phase::other);
     if constexpr (System::kSaddle) {
       for (long k = 0; k < m_; ++k) lambda_[k] += 4 / (dt_ * dt_) * y_[k];
-    } else {
+    }
+    last = outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    if (last && settings_.projections != Projections::none) project();  // with this pass's Phi_q
+    if (!last || !System::kSaddle) evaluate_constraints();              // at the new q'
+    if constexpr (!System::kSaddle) {
+      phases_.enter(Phase::other);
       for (long k = 0; k < m_; ++k) lambda_[k] += alpha_ * Phi_[k];  // Eq. (1)
     }
   }
-  if (settings_.projections != Projections::none) project();
   return outcome;
 }
 
@@ -121,24 +119,14 @@ void HybridSimulation<D, System>::drive() {
       const TimeFunction::Sample now = driven.position[i].at(time());
       const int slot = slots_.of[driven.point] + i;
       q_[slot] = now.value;
-      fixed_v_[slot] = now.rate;
-      fixed_a_[slot] = now.acceleration;
+      v_[slot] = now.rate;
+      a_[slot] = now.acceleration;
     }
   }
-  write_driven_velocities(1.0);
   if (model_.driven_mass().empty()) return;
   std::ranges::copy(model_.force(), Q_.data());
   for (const auto& [coordinate, point, axis, value] : model_.driven_mass()) {
-    Q_[coordinate] -= value * fixed_a_[slots_.of[point] + axis];
-  }
-}
-
-// Into v'; with factor 0 zeros, for products with Phi_q, which has no columns for driven points.
-template <int D, class System>
-void HybridSimulation<D, System>::write_driven_velocities(double factor) {
-  for (const DrivenPoint& driven : model_.driven_points()) {
-    const int slot = slots_.of[driven.point];
-    for (int i = slot; i < slot + D; ++i) v_[i] = factor * fixed_v_[i];
+    Q_[coordinate] -= value * a_[slots_.of[point] + axis];
   }
 }
 
@@ -199,60 +187,34 @@ bool HybridSimulation<D, System>::correct() {
   return large == 0;
 }
 
-// What the projections take from J, the Phi_q in the last pass's matrix: before Phi_q is evaluated
-// anew.
-template <int D, class System>
-void HybridSimulation<D, System>::multiply_jacobian() {
-  phases_.enter(Phase::projection);
-  const bool both = settings_.projections == Projections::both;
-  const double *J = Phi_q_.data(), *v = v_.data(), *a = a_.data();
-  double *right_v = right_v_.data(), *right_a = right_a_.data();
-  write_driven_velocities(0.0);
-  if constexpr (System::kSaddle) {
-    constraints_.multiply(J, v, right_v);
-    if (both) constraints_.multiply(J, a, right_a);
-  } else {
-    std::fill_n(right_v, slots_.total, 0.0);
-    if (both) {
-      std::fill_n(right_a, slots_.total, 0.0);
-      constraints_.template add_products<2>(minus_s_, J, {v, a}, {right_v, right_a});
-    } else {
-      constraints_.template add_products<1>(minus_s_, J, {v}, {right_v});
-    }
-  }
-  write_driven_velocities(1.0);
-}
-
-// Eq. (6) or (13) with the last pass's matrix, for v' - v* and a' - a*.
+// Eq. (6) or (13), for v' - v* and a' - a*.
 template <int D, class System>
 void HybridSimulation<D, System>::project() {
   phases_.enter(Phase::projection);
-  const bool rates = constraints_.driven();                        // else Phi_t = 0
-  const auto add = [&](Array& right, Array& result, bool has_y) {  // y_ is what follows Phi_q^T
-    Array& difference = System::kSaddle ? Delta_q_ : right;
-    if constexpr (System::kSaddle) {
-      static_cast<void>(has_y);
-      for (long k = 0; k < m_; ++k) y_[k] = -(right[k] + y_[k]);
-      phases_.enter(Phase::solve);
-      system_.solve_constraints(difference.data(), y_.data());
-    } else {
-      if (has_y) {
-        for (long k = 0; k < m_; ++k) y_[k] *= minus_s_;
-        constraints_.add_forces(Phi_q_.data(), y_.data(), right.data());
-      }
-      phases_.enter(Phase::solve);
-      system_.solve(difference.data());
-    }
-    for (long i = 0; i < n_; ++i) result[i] += difference[i];
-  };
-  if (rates || System::kSaddle) std::fill_n(y_.data(), m_, 0.0);
-  if (rates) constraints_.add_rates(Phi_q_.data(), fixed_v_.data(), y_.data());
-  add(right_v_, v_, rates);
+  constraints_.first_derivative(Phi_q_.data(), v_.data(), y_.data());
+  subtract_projection(v_);
   if (settings_.projections != Projections::both) return;
   phases_.enter(Phase::projection);
-  constraints_.second_derivative(v_.data(), y_.data());
-  if (rates) constraints_.add_accelerations(Phi_q_.data(), fixed_a_.data(), y_.data());
-  add(right_a_, a_, true);
+  constraints_.second_derivative(Phi_q_.data(), v_.data(), a_.data(), y_.data());
+  subtract_projection(a_);
+}
+
+// What y_, the derivative of Phi, takes from v* or a*.
+template <int D, class System>
+void HybridSimulation<D, System>::subtract_projection(Array& result) {
+  double* difference = Delta_q_.data();
+  if constexpr (System::kSaddle) {
+    phases_.enter(Phase::solve);
+    system_.solve_constraints(difference, y_.data());
+  } else {
+    const double s = dt_ * dt_ / 4 * alpha_;
+    for (long k = 0; k < m_; ++k) y_[k] *= s;
+    std::fill_n(difference, padded(n_), 0.0);
+    constraints_.add_forces(Phi_q_.data(), y_.data(), difference);
+    phases_.enter(Phase::solve);
+    system_.solve(difference);
+  }
+  for (long i = 0; i < n_; ++i) result[i] -= difference[i];
 }
 
 template class HybridSimulation<2, PenaltySystem<2, LltSolver>>;

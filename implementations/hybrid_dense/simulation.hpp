@@ -12,7 +12,8 @@
 
 namespace mbs::hybrid_dense {
 
-/// Names are the paper's symbols. q_, v_ and right-hand sides have room for fixed points (Slots).
+/// Names are the paper's symbols. q_, v_, a_ and right-hand sides have room for fixed points
+/// (Slots).
 template <int D, class System>
 class HybridSimulation final : public Simulation {
  public:
@@ -29,14 +30,12 @@ class HybridSimulation final : public Simulation {
   void evaluate_constraints();
   void evaluate_residual();
   [[nodiscard]] bool correct();
-  void multiply_jacobian();
   void project();
-  void write_driven_velocities(double factor);
+  void subtract_projection(Array& result);
 
   const Model& model_;
   const StepSettings settings_;
   const double dt_ = settings_.step, alpha_ = settings_.penalty;
-  const double minus_s_ = -dt_ * dt_ / 4 * alpha_;
   const long n_ = model_.variables(), m_ = model_.constraints();
   const Slots slots_{model_};
   const bool driven_;
@@ -49,12 +48,8 @@ class HybridSimulation final : public Simulation {
   Array q_{slots_.total}, v_{slots_.total}, a_{slots_.total};
   Array lambda_{padded(m_)}, Phi_{padded(m_)}, y_{padded(m_)};
   Array Phi_q_{constraints_.entries()};
-  Array Q_{padded(n_)};                                  // gravity, less what driven mass takes
-  Array fixed_v_{slots_.total}, fixed_a_{slots_.total};  // of driven points; zero elsewhere
-  Array Delta_q_{slots_.total};                          // -f, then the solution of Eq. (4)
-  // Right-hand sides of Eq. (6), then v' - v* and a' - a*. Saddle-point form: J v* and J a*.
-  Array right_v_{System::kSaddle ? m_ : slots_.total},
-      right_a_{System::kSaddle ? m_ : slots_.total};
+  Array Q_{padded(n_)};          // gravity, less what driven mass takes
+  Array Delta_q_{slots_.total};  // right-hand sides, then solutions
 };
 
 }  // namespace mbs::hybrid_dense

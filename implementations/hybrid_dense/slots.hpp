@@ -9,7 +9,7 @@
 
 namespace mbs::hybrid_dense {
 
-/// q is the n coordinates, zeros up to whole vectors, then the fixed points. So are v, and
+/// q is the n coordinates, zeros up to whole vectors, then the fixed points. So are v, a, and
 /// right-hand sides, where nobody reads what fixed points get.
 struct Slots {
   explicit Slots(const Model& model) : n(model.variables()), total(padded(n)) {

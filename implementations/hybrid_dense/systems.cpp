@@ -64,7 +64,6 @@ SaddleSystem<D, Solver>::SaddleSystem(const Model& model, const Slots& slots,
       S_(m_),
       schedule_(model, {}, {}, forces.tangent_entries(),
                 [this](long i, long j) { return T_0_.position(i, j); }),
-      Phi_q_(constraints.entries()),
       inverse_((forces.in_tangent() ? padded(m_) : total_) * padded(n_)),
       product_(total_ * padded(m_)),
       z_(total_),
@@ -105,7 +104,7 @@ void SaddleSystem<D, Solver>::solve_rows() {
 
 template <int D, class Solver>
 void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
-  std::copy_n(Phi_q, constraints_.entries(), Phi_q_.data());
+  Phi_q_ = Phi_q;
   if (forces_.in_tangent()) {
     schedule_.assemble(0.0, Phi_q, T_0_.matrix());
     forces_.add_tangent(T_0_.matrix());
@@ -159,7 +158,7 @@ void SaddleSystem<D, Solver>::solve(double* x, double* y) {
   std::fill(x + n_, x + padded(n_), 0.0);  // a lost step may have left NaN
   if (!forces_.in_tangent()) {
     multiply(rows, n_, padded(n_), x, z_.data());
-    constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
+    constraints_.multiply(Phi_q_, z_.data(), z_y_.data());
   } else {
     // Rows are Phi_q L^-T where there are products, so that L is needed once, else Phi_q T_0^-1.
     if constexpr (Solver::kProducts) T_0_.solve_lower(x);
@@ -191,7 +190,7 @@ void SaddleSystem<D, Solver>::solve_schur(double* x, double* y) {
     return;
   }
   for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
-  constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
+  constraints_.add_forces(Phi_q_, z_y_.data(), x);
   multiply(rows, n_, padded(n_), x, z_.data());
   std::copy_n(z_.data(), n_, x);
 }

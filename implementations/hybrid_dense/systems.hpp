@@ -63,7 +63,7 @@ class SaddleSystem {
   SaddleSystem(const Model& model, const Slots& slots, const Constraints<D>& constraints,
                Forces<D>& forces, const StepSettings& settings);
 
-  /// Takes Phi_q: solve() is with this one.
+  /// Phi_q is read until the last solve with it.
   void assemble(const double* Phi_q);
   [[nodiscard]] bool factorize();
   /// x is r_1, y is r_2 when they arrive, then the solution.
@@ -84,7 +84,7 @@ class SaddleSystem {
   Solver T_0_, S_;
   Schedule schedule_;
   bool regular_ = true;
-  Array Phi_q_;
+  const double* Phi_q_ = nullptr;
   // T_0^-1, row by row; rows of fixed points are zero. With springs only Phi_q T_0^-1,
   // or Phi_q L^-T of T_0 = L L^T.
   Array inverse_;
