@@ -29,6 +29,11 @@ struct Equations {
     jacobian.evaluate(q.data(), phi.data());
     if (has_drivers) drivers.subtract_values(phi.data());
   }
+  /// Phi alone.
+  void evaluate_phi() {
+    jacobian.evaluate_phi(q.data(), phi.data());
+    if (has_drivers) drivers.subtract_values(phi.data());
+  }
   /// The right-hand side -f of Eq. (4); without a penalty -f0 of Eq. (12). `right` has n numbers.
   void evaluate_residual(double penalty, double* right);
   /// After a pass of the penalty form.
@@ -51,8 +56,7 @@ struct Equations {
   const bool has_drivers;
 
   std::vector<double> weighted_force;  ///< dt^2/4 times the constant part of Q (n)
-  std::vector<double> q, v;            ///< extended by the fixed points and their velocity
-  std::vector<double> a;               ///< n
+  std::vector<double> q, v, a;         ///< extended by fixed points, their velocity, acceleration
   std::vector<double> lambda, phi;     ///< m, in the order of JacobianPattern
   std::vector<double> reaction;        ///< m; what Phi_q^T multiplies
 };
@@ -69,12 +73,11 @@ Equations<dim>::Equations(const Model& model, double step)
       forces(force_pattern, step),
       has_forces(forces.any()),
       driver_pattern(model, jacobian_pattern),
-      drivers(driver_pattern, jacobian_pattern),
+      drivers(driver_pattern),
       has_drivers(drivers.any()),
       weighted_force(model.force().begin(), model.force().end()),
       q(model.initial_position().begin(), model.initial_position().end()),
       v(model.initial_velocity().begin(), model.initial_velocity().end()),
-      a(n, 0.0),
       lambda(m, 0.0),
       phi(m, 0.0),
       reaction(m, 0.0) {
@@ -82,7 +85,8 @@ Equations<dim>::Equations(const Model& model, double step)
   const std::vector<double> fixed = fixed_coordinates(model);
   q.insert(q.end(), fixed.begin(), fixed.end());
   v.resize(q.size(), 0.0);
-  if (has_drivers) drivers.sample(0.0, q.data(), v.data());
+  a.resize(q.size(), 0.0);
+  if (has_drivers) drivers.sample(0.0, q.data(), v.data(), a.data());
   evaluate_constraints();
   std::vector<double> unused(n);
   if (has_forces) forces.evaluate(q.data(), v.data(), unused.data());
@@ -100,7 +104,7 @@ template <int dim>
 void Equations<dim>::get_state(State& state) const {
   std::copy_n(q.begin(), n, state.q.begin());
   std::copy_n(v.begin(), n, state.v.begin());
-  std::ranges::copy(a, state.a.begin());
+  std::copy_n(a.begin(), n, state.a.begin());
   for (int i = 0; i < m; ++i) state.lambda[jacobian_pattern.model_row[i]] = lambda[i];
 }
 
@@ -110,14 +114,14 @@ inline void Equations<dim>::evaluate_residual(double penalty, double* __restrict
   const double* __restrict const lambda_i = lambda.data();
   double* __restrict const reaction_i = reaction.data();
   for (int i = 0; i < m; ++i) {
-    reaction_i[i] = weight * (lambda_i[i] + penalty * phi_i[i]);  // Eq. (3)
+    reaction_i[i] = lambda_i[i] + penalty * phi_i[i];  // Eq. (3)
   }
   mass.multiply(a.data(), right);
   const double* __restrict const force = weighted_force.data();
   for (int i = 0; i < n; ++i) right[i] = force[i] - weight * right[i];  // Eq. (3)
-  jacobian.subtract_transposed_product(reaction_i, right);              // Eq. (3)
+  jacobian.subtract_transposed_product(reaction_i, weight, right);      // Eq. (3)
   if (has_forces) forces.evaluate(q.data(), v.data(), right);
-  if (has_drivers) drivers.subtract_inertia(weight, right);
+  if (has_drivers) drivers.subtract_inertia(weight, a.data(), right);
 }
 
 }  // namespace mbs::csc_klu

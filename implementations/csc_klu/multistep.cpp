@@ -48,7 +48,7 @@ class MultistepSimulation final : public Simulation {
     std::ranges::copy(e.q, seen.q.begin());
     differentiate(e.n, settings_.step, moves_, accelerations_, seen.v.data());
     if (!observer_->rattle.settle(true)) {
-      std::ranges::fill(seen.a, std::numeric_limits<double>::quiet_NaN());
+      std::fill_n(seen.a.begin(), seen.n, std::numeric_limits<double>::quiet_NaN());
       std::ranges::fill(seen.lambda, std::numeric_limits<double>::quiet_NaN());
     }
     seen.get_state(state);
@@ -73,7 +73,7 @@ class MultistepSimulation final : public Simulation {
     const Equations<dim>& e = rattle_.equations();
     double* const w = moves_.back(0);
     std::copy_n(e.q.begin(), e.n, w);
-    std::ranges::copy(e.a, accelerations_.back(0));
+    std::copy_n(e.a.begin(), e.n, accelerations_.back(0));
     const StepOutcome outcome = rattle_.advance();
     if (outcome.status == StepStatus::factorization_failed) return outcome;
     for (int i = 0; i < e.n; ++i) w[i] = e.q[i] - w[i];

@@ -19,13 +19,13 @@ inline void predict(int n, double h, double* __restrict q, double* __restrict v,
   }
 }
 
-/// Adds an increment of q (n); true if it is within the tolerance, which no NaN is.
+/// Adds to v and a what belongs to an increment of q (n); true if that is within the tolerance,
+/// which no NaN is.
 inline bool correct(int n, double h, double tolerance, const double* __restrict increment,
-                    double* __restrict q, double* __restrict v, double* __restrict a) {
+                    double* __restrict v, double* __restrict a) {
   long long beyond = 0;
   for (int i = 0; i < n; ++i) {
     beyond |= !(std::abs(increment[i]) <= tolerance);
-    q[i] += increment[i];
     v[i] += (2.0 / h) * increment[i];        // Eq. (2)
     a[i] += (4.0 / (h * h)) * increment[i];  // Eq. (2)
   }

@@ -4,8 +4,6 @@
 #include <concepts>
 #include <span>
 
-#include "jacobian.hpp"
-
 namespace mbs::csc_klu {
 
 /// A matrix, T of Eq. (5) or that of Eq. (12), with one right-hand side, which has n numbers or,
@@ -14,25 +12,23 @@ namespace mbs::csc_klu {
 ///   system.evaluate_residual();           // right(): that of Eq. (4) or (12), at q', v'
 ///   system.assemble();                    // values of the matrix at q', with C and K as they are
 ///   if (system.factorize()) system.solve();  // right() becomes the solution, Delta q the first n
-///   system.update_multipliers();          // lambda, by Phi at the new q' or by the solution
+///   system.take_multipliers();            // lambda by the solution, in saddle-point form
+///   system.update_multipliers();          // lambda by Phi at the new q', in penalty form
 ///
 /// For projections right() takes n numbers first; include_constraints(z) completes them by
 /// -dt^2/4 alpha Phi_q^T z, Eqs. (6) and (15), or by -z, Eq. (13); z has m numbers.
-/// begin_projections(products, v, a) writes that of J v* and of J a*, `products` (m), to vectors of
-/// the size of right(), initially zero.
 /// Refined ones: include_geometric_stiffness(x) adds what Eq. (16) has in T_0 x; x has n numbers.
 /// They have nu in saddle-point form: reset_reactions() makes it zero, include_reactions() puts its
 /// share into right(), update_reactions() adds what a solution has of it.
 template <class System>
-concept NewtonSystem = requires(System system, std::span<const double> z,
-                                std::span<const Both> products) {
+concept NewtonSystem = requires(System system, std::span<const double> z) {
   system.evaluate_residual();
   system.assemble();
   { system.factorize() } -> std::same_as<bool>;
   system.solve();
+  system.take_multipliers();
   system.update_multipliers();
   system.include_constraints(z);
-  system.begin_projections(products, system.right(), system.right());
   system.include_geometric_stiffness(z.data());
   system.reset_reactions();
   system.include_reactions();

@@ -23,7 +23,6 @@ class PenaltySystem {
         hessians_(needed_hessians(model, settings, equations.jacobian_pattern)),
         geometric_(hessians_, pattern_.pattern, equations.weight),
         right_(equations.n, 0.0),
-        weighted_(equations.m, 0.0),
         solver_(pattern_.pattern, assemble(),
                 {geometric_.any() ? Structure::Kind::indefinite : Structure::Kind::definite,
                  pattern_.order}) {}
@@ -41,14 +40,8 @@ class PenaltySystem {
 
   void evaluate_residual() { equations_.evaluate_residual(penalty_, right_.data()); }
   void include_constraints(std::span<const double> rates) {
-    const double factor = equations_.weight * penalty_;
-    for (int i = 0; i < equations_.m; ++i) weighted_[i] = factor * rates[i];
-    equations_.jacobian.subtract_transposed_product(weighted_.data(), right_.data());
-  }
-  void begin_projections(std::span<const Both> products, std::span<double> right_v,
-                         std::span<double> right_a) {
-    equations_.jacobian.multiply_transposed(products.data(), -equations_.weight * penalty_,
-                                            right_v.data(), right_a.data());
+    equations_.jacobian.subtract_transposed_product(rates.data(), equations_.weight * penalty_,
+                                                    right_.data());
   }
   void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() {}
@@ -57,6 +50,7 @@ class PenaltySystem {
   void solve() { solver_.solve(right_); }
   [[nodiscard]] std::span<double> right() { return right_; }
 
+  void take_multipliers() {}
   void update_multipliers() { equations_.update_multipliers(penalty_); }
 
  private:
@@ -67,7 +61,6 @@ class PenaltySystem {
   const std::vector<HessianEntry> hessians_;
   GeometricStiffness geometric_;  ///< perhaps of nothing
   std::vector<double> right_;     ///< n
-  std::vector<double> weighted_;  ///< m
   Solver solver_;
 };
 

@@ -21,7 +21,8 @@ enum class Repair {
 };
 
 /// Works on x, the v or a of `equations`, with the factors of `system`; both, and `phases`, have to
-/// outlive this. What the constraints give comes from a member of ConstraintRates.
+/// outlive this. What the constraints give comes from `rates`, the member of ConstraintRates with
+/// x.
 template <int dim, NewtonSystem System>
 class Projection {
  public:
@@ -36,32 +37,27 @@ class Projection {
         stiffness_(equations.force_pattern, step),
         start_(equations.n, 0.0),
         moved_(equations.n, 0.0),
-        right_(system.right().size(), 0.0),
-        products_(equations.m),
-        begun_v_(right_.size(), 0.0),
-        begun_a_(right_.size(), 0.0) {}
+        right_(system.right().size(), 0.0) {}
 
   /// For refine(): takes note of C and K, whenever they have gone into the matrix.
   void keep_stiffness() {
     if (equations_.has_forces) stiffness_.copy_stiffness(equations_.forces);
   }
 
-  /// Takes what J, the Phi_q in the matrix, gives of the right-hand sides of Eq. (6) or (13). To be
-  /// called when v and a are v* and a* already, but Phi_q is still J.
-  void begin() {
+  /// Eq. (6) or (13), solved for what it changes of x; q is still that of the matrix.
+  void solve(Rates rates, double* x) {
     phases_.enter(Phase::projection);
-    equations_.jacobian.multiply(equations_.v.data(), equations_.a.data(), products_.data());
-    system_.begin_projections(products_, begun_v_, begun_a_);
-  }
-  /// Eq. (6) or (13), solved for what it changes of v; after begin().
-  void solve_velocity(double* v) { solve(&ConstraintRates<dim>::partial_velocity, begun_v_, v); }
-  /// The same for a, with that v.
-  void solve_acceleration(double* a) {
-    solve(&ConstraintRates<dim>::partial_acceleration, begun_a_, a);
+    const std::span<double> right = system_.right();
+    std::fill_n(right.begin(), equations_.n, 0.0);
+    system_.include_constraints((rates_.*rates)());
+    phases_.enter(Phase::solve);
+    system_.solve();
+    phases_.enter(Phase::projection);
+    for (int i = 0; i < equations_.n; ++i) x[i] += right[i];
   }
 
-  /// Eq. (15) until a correction is not beyond `enough`; `rates` are those with x. Where
-  /// corrections shrink too slowly, `repair()` may bring new factors. False if that failed.
+  /// Eq. (15) until a correction is not beyond `enough`. Where corrections shrink too slowly,
+  /// `repair()` may bring new factors. False if that failed.
   template <class RepairFactors>
   bool refine(Rates rates, double* x, double enough, RepairFactors repair) {
     std::copy_n(x, equations_.n, start_.data());
@@ -86,19 +82,6 @@ class Projection {
 
  private:
   static constexpr int kMostRefinements = 5;
-
-  /// `rates` are those without x.
-  void solve(Rates rates, const std::vector<double>& begun, double* x) {
-    phases_.enter(Phase::projection);
-    const std::span<double> right = system_.right();
-    std::fill_n(right.begin(), equations_.n, 0.0);
-    system_.include_constraints((rates_.*rates)());
-    for (std::size_t i = 0; i < right.size(); ++i) right[i] += begun[i];
-    phases_.enter(Phase::solve);
-    system_.solve();
-    phases_.enter(Phase::projection);
-    for (int i = 0; i < equations_.n; ++i) x[i] += right[i];
-  }
 
   /// The right-hand side of Eq. (15), in right_.
   void evaluate_residual(Rates rates, const double* x) {
@@ -130,12 +113,10 @@ class Projection {
   System& system_;
   PhaseClock& phases_;
   ConstraintRates<dim> rates_;
-  Forces<dim> stiffness_;                  ///< for C and K of the last matrix
-  std::vector<double> start_;              ///< n; v* or a*
-  std::vector<double> moved_;              ///< n; what T_0 multiplies
-  std::vector<double> right_;              ///< right-hand side of Eq. (15)
-  std::vector<Both> products_;             ///< m; J v* and J a*
-  std::vector<double> begun_v_, begun_a_;  ///< right-hand sides of Eq. (6) or (13), as far as by J
+  Forces<dim> stiffness_;      ///< for C and K of the last matrix
+  std::vector<double> start_;  ///< n; v* or a*
+  std::vector<double> moved_;  ///< n; what T_0 multiplies
+  std::vector<double> right_;  ///< right-hand side of Eq. (15)
 };
 
 }  // namespace mbs::csc_klu

@@ -148,7 +148,7 @@ class RattleStep {
     const double h = settings_.step, enough = (4.0 / (h * h)) * settings_.tolerance;
     phases_.enter(Phase::projection);
     std::ranges::copy(force_, system_.right().begin());
-    solve(rates_.partial_acceleration());
+    solve(rates_.velocity_term());
     std::copy_n(system_.right().begin(), e.n, e.a.begin());
     std::copy_n(system_.multipliers(), e.m, e.lambda.begin());
     for (int k = 0; k < kMostRefinements; ++k) {

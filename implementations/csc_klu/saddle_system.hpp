@@ -56,17 +56,10 @@ class SaddleSystem {
     double* const lower = right_.data() + equations_.n;
     for (int i = 0; i < equations_.m; ++i) lower[i] = -scales_[i] * rates[i];  // Eqs. (12), (13)
   }
-  void begin_projections(std::span<const Both> products, std::span<double> right_v,
-                         std::span<double> right_a) {
-    for (int i = 0; i < equations_.m; ++i) {
-      right_v[equations_.n + i] = -scales_[i] * products[i][0];  // Eq. (13)
-      right_a[equations_.n + i] = -scales_[i] * products[i][1];
-    }
-  }
   void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() { std::ranges::fill(nu_, 0.0); }
   void include_reactions() {
-    equations_.jacobian.subtract_transposed_product(nu_.data(), right_.data());
+    equations_.jacobian.subtract_transposed_product(nu_.data(), 1.0, right_.data());
     double* const lower = right_.data() + equations_.n;
     for (int i = 0; i < equations_.m; ++i) lower[i] += scales_[i] * epsilon_ * nu_[i];
   }
@@ -81,10 +74,11 @@ class SaddleSystem {
   [[nodiscard]] std::span<double> right() { return right_; }
   [[nodiscard]] const double* multipliers() const { return right_.data() + equations_.n; }
 
-  void update_multipliers() {
+  void take_multipliers() {
     const double* const mu = multipliers();
     for (int i = 0; i < equations_.m; ++i) equations_.lambda[i] += multiplier_factor_ * mu[i];
   }
+  void update_multipliers() {}
 
  private:
   Equations<dim>& equations_;

@@ -1,9 +1,11 @@
 // The step of paper/README.md over sparse storage, and the choice of a scheme.
 #include "simulation.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
+#include "constraint_rates.hpp"
 #include "equations.hpp"
 #include "multistep.hpp"
 #include "newmark.hpp"
@@ -25,9 +27,9 @@ class NewtonSimulation final : public Simulation {
         tangent_pattern_(model, equations_.jacobian_pattern, equations_.force_pattern),
         tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
                  equations_.weight * settings.penalty),
-        right_v_(equations_.n, 0.0),
-        right_a_(equations_.n, 0.0),
-        products_(equations_.m),
+        rates_(equations_),
+        right_(equations_.n, 0.0),
+        change_(equations_.n, 0.0),
         solver_(tangent_.pattern(), assemble_tangent(),
                 {Structure::Kind::definite, tangent_pattern_.order}) {}
 
@@ -37,7 +39,7 @@ class NewtonSimulation final : public Simulation {
 
   StepOutcome do_step() override {
     Equations<dim>& e = equations_;
-    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data());
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), e.a.data());
     if (e.has_forces) e.forces.set_time(time());
     predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
@@ -47,7 +49,7 @@ class NewtonSimulation final : public Simulation {
     while (goes_on) {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
-      e.evaluate_residual(settings_.penalty, right_a_.data());
+      e.evaluate_residual(settings_.penalty, right_.data());
       phases_.enter(Phase::assembly);
       assemble_tangent();
       phases_.enter(Phase::factorization);
@@ -56,22 +58,24 @@ class NewtonSimulation final : public Simulation {
         return {StepStatus::factorization_failed, outcome.passes};
       }
       phases_.enter(Phase::solve);
-      solver_.solve(right_a_);
-      phases_.enter(Phase::projection);
+      solver_.solve(right_);
       phases_.enter(Phase::other);
-      if (correct(e.n, settings_.step, settings_.tolerance, right_a_.data(), e.q.data(), e.v.data(),
+      if (correct(e.n, settings_.step, settings_.tolerance, right_.data(), e.v.data(),
                   e.a.data())) {
         outcome.status = StepStatus::converged;
       }
       goes_on = outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes;
-      if (!goes_on && settings_.projections != Projections::none) begin_projections();
+      if (!goes_on) project();
+      for (int i = 0; i < e.n; ++i) e.q[i] += right_[i];
       phases_.enter(Phase::evaluation);
-      e.evaluate_constraints();
+      if (goes_on) {
+        e.evaluate_constraints();
+      } else {
+        e.evaluate_phi();
+      }
       phases_.enter(Phase::other);
       e.update_multipliers(settings_.penalty);
     }
-    if (settings_.projections != Projections::none) project();
-    phases_.enter(Phase::other);
     return outcome;
   }
 
@@ -81,45 +85,35 @@ class NewtonSimulation final : public Simulation {
     return tangent_.values();
   }
 
-  /// What J, the Phi_q in T, gives of the right-hand sides of Eq. (6): v and a are v* and a*
-  /// already, but Phi_q is still J.
-  void begin_projections() {
-    const Jacobian<dim>& J = equations_.jacobian;
-    phases_.enter(Phase::projection);
-    J.multiply(equations_.v.data(), equations_.a.data(), products_.data());
-    J.multiply_transposed(products_.data(), -equations_.weight * settings_.penalty, right_v_.data(),
-                          right_a_.data());
-  }
-
-  /// Eq. (6) with the last factors, solved for what it changes.
+  /// Eq. (6) with the last factors, solved for what it changes; q is still that of T.
   void project() {
-    Equations<dim>& e = equations_;
-    const double factor = e.weight * settings_.penalty;
-    phases_.enter(Phase::projection);
-    if (e.has_drivers) e.drivers.subtract_rates(e.jacobian, e.q.data(), factor, right_v_.data());
-    phases_.enter(Phase::solve);
-    solver_.solve(right_v_);
-    phases_.enter(Phase::projection);
-    for (int i = 0; i < e.n; ++i) e.v[i] += right_v_[i];
-    if (settings_.projections != Projections::both) return;
-    e.jacobian.velocity_term(e.v.data(), factor, e.reaction.data());
-    e.jacobian.subtract_transposed_quadratics(e.reaction.data(), right_a_.data());
-    if (e.has_drivers) {
-      e.drivers.subtract_accelerations(e.jacobian, e.q.data(), factor, right_a_.data());
+    using Rates = ConstraintRates<dim>;
+    if (settings_.projections == Projections::none) return;
+    project(&Rates::velocity, equations_.v.data());
+    if (settings_.projections == Projections::both) {
+      project(&Rates::acceleration, equations_.a.data());
     }
-    phases_.enter(Phase::solve);
-    solver_.solve(right_a_);
+    phases_.enter(Phase::other);
+  }
+  /// The same of x alone; `rates` are those with x.
+  void project(typename ConstraintRates<dim>::Result (ConstraintRates<dim>::*rates)(), double* x) {
+    const Equations<dim>& e = equations_;
     phases_.enter(Phase::projection);
-    for (int i = 0; i < e.n; ++i) e.a[i] += right_a_[i];
+    e.jacobian.multiply_transposed((rates_.*rates)().data(), -e.weight * settings_.penalty,
+                                   change_.data());
+    phases_.enter(Phase::solve);
+    solver_.solve(change_);
+    phases_.enter(Phase::projection);
+    for (int i = 0; i < e.n; ++i) x[i] += change_[i];
   }
 
   const StepSettings settings_;
   Equations<dim> equations_;
   const TangentPattern<dim> tangent_pattern_;
   Tangent<dim> tangent_;
-  std::vector<double> right_v_;  ///< n; right-hand side and solution for v' - v*
-  std::vector<double> right_a_;  ///< n; the same for Delta q and a' - a*
-  std::vector<Both> products_;   ///< m; J v* and J a*
+  ConstraintRates<dim> rates_;
+  std::vector<double> right_;   ///< n; right-hand side and solution of Eq. (4)
+  std::vector<double> change_;  ///< n; the same of Eq. (6)
   Solver solver_;
 };
 

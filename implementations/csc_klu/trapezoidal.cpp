@@ -1,6 +1,9 @@
 // The trapezoidal step with all settings: saddle-point form, kept factors, refined projections.
 #include "trapezoidal.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "equations.hpp"
 #include "newmark.hpp"
 #include "newton_system.hpp"
@@ -19,6 +22,7 @@ class TrapezoidalSimulation final : public Simulation {
         settings_(settings),
         equations_(model, settings.step),
         system_(model, settings, equations_),
+        correction_(equations_.n, 0.0),
         projection_(settings.step, equations_, system_, phases_) {}
 
  private:
@@ -31,7 +35,7 @@ class TrapezoidalSimulation final : public Simulation {
 
   StepOutcome do_step() override {
     Equations<dim>& e = equations_;
-    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data());
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), e.a.data());
     if (e.has_forces) e.forces.set_time(time());
     predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
@@ -40,7 +44,7 @@ class TrapezoidalSimulation final : public Simulation {
     is_updated_ = false;
     const bool projects = ends_projected();
     StepOutcome outcome{StepStatus::pass_limit, 0, 0};
-    if (!iterate(projects, outcome) || (projects && !project(outcome))) {
+    if (!iterate(projects, outcome) || (projects && is_refined() && !refine(outcome))) {
       outcome.status = StepStatus::factorization_failed;
     }
     phases_.enter(Phase::other);
@@ -48,10 +52,10 @@ class TrapezoidalSimulation final : public Simulation {
     return outcome;
   }
 
-  /// All passes of a step, perhaps one that ends projected; false if a factorization failed.
+  /// All passes of a step, and its projections unless they are refined; false if a factorization
+  /// failed.
   bool iterate(bool projects, StepOutcome& outcome) {
     Equations<dim>& e = equations_;
-    const bool begins = projects && !is_refined();
     double before = 0.0;
     bool goes_on = true;
     while (goes_on) {
@@ -62,16 +66,23 @@ class TrapezoidalSimulation final : public Simulation {
       phases_.enter(Phase::solve);
       system_.solve();
       phases_.enter(Phase::other);
-      const double size = largest(e.n, system_.right().data());
-      const bool is_within = correct(e.n, settings_.step, settings_.tolerance,
-                                     system_.right().data(), e.q.data(), e.v.data(), e.a.data());
+      std::copy_n(system_.right().begin(), e.n, correction_.begin());
+      const double size = largest(e.n, correction_.data());
+      const bool is_within = correct(e.n, settings_.step, settings_.tolerance, correction_.data(),
+                                     e.v.data(), e.a.data());
       const bool is_slow = outcome.passes > 1 && !is_within && !(size <= before / 4.0);
       before = size;
       if (has_converged(is_within)) outcome.status = StepStatus::converged;
       goes_on = outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes;
-      if (begins && !goes_on) projection_.begin();
+      system_.take_multipliers();
+      if (!goes_on && projects && !is_refined()) project();
+      for (int i = 0; i < e.n; ++i) e.q[i] += correction_[i];
       phases_.enter(Phase::evaluation);
-      e.evaluate_constraints();
+      if (goes_on || is_refined()) {
+        e.evaluate_constraints();
+      } else {
+        e.evaluate_phi();
+      }
       phases_.enter(Phase::other);
       update_multipliers(is_within);
       if (settings_.tangent == TangentReuse::none) is_due_ = true;
@@ -111,17 +122,22 @@ class TrapezoidalSimulation final : public Simulation {
     return settings_.projections != Projections::none;
   }
 
-  /// False if a factorization failed.
-  bool project(StepOutcome& outcome) {
+  /// By Eq. (6) or (13); q is still that of the matrix.
+  void project() {
+    using Rates = ConstraintRates<dim>;
+    projection_.solve(&Rates::velocity, equations_.v.data());
+    if (settings_.projections == Projections::both) {
+      projection_.solve(&Rates::acceleration, equations_.a.data());
+    }
+    phases_.enter(Phase::other);
+  }
+
+  /// Projects by Eq. (15); false if a factorization failed.
+  bool refine(StepOutcome& outcome) {
     Equations<dim>& e = equations_;
     using Rates = ConstraintRates<dim>;
     const double h = settings_.step, tolerance = settings_.tolerance;
     const bool both = settings_.projections == Projections::both;
-    if (!is_refined()) {
-      projection_.solve_velocity(e.v.data());
-      if (both) projection_.solve_acceleration(e.a.data());
-      return true;
-    }
     const auto repair = [&] {
       if (settings_.tangent != TangentReuse::kept) return Repair::none;
       return factorize_at_end(outcome) ? Repair::done : Repair::failed;
@@ -141,6 +157,7 @@ class TrapezoidalSimulation final : public Simulation {
   const StepSettings settings_;
   Equations<dim> equations_;
   System system_;
+  std::vector<double> correction_;  ///< n; Delta q
   Projection<dim, System> projection_;
   bool is_due_ = true;       ///< the next pass factorizes
   bool is_updated_ = false;  ///< the pass before updated lambda
