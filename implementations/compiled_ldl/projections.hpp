@@ -10,94 +10,54 @@ bool Stepper<S, F, D>::project(StepOutcome& outcome) {
   if (settings_.projections == Projections::none) return true;
   if (++unprojected_ < settings_.projections_every) return true;
   unprojected_ = 0;
-  phases_.enter(Phase::projection);
   auto& s = system_;
-  const auto solve = [&](S* x, bool of_velocity) {
-    if (refines_) {
-      std::copy(x, x + s.program.padded, star_.data());
-      return refine(x, star_.data(), of_velocity, outcome);
-    }
-    if (s.saddle) {
-      project_saddle(x, of_velocity && !s.drivers.any() ? nullptr : velocity_terms_.data());
-    } else {
-      project_penalty(x, of_velocity ? nullptr : s.v.data());
-    }
+  const auto solve = [&](S* x, const S* v, const S* given) {
+    if (refines_) return refine(x, v, given, outcome);
+    project_once(x, v, given);
     return true;
   };
-  const bool lists_terms = s.saddle || refines_;
-  if (lists_terms && s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
-  if (!solve(s.v.data(), true)) return false;
+  if (!solve(s.v.data(), nullptr, s.drivers.rates())) return false;
   if (settings_.projections == Projections::velocity) return true;
-  phases_.enter(Phase::projection);
-  if (lists_terms) {
-    s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
-  }
-  return solve(s.a.data(), false);
+  return solve(s.a.data(), s.v.data(), s.drivers.accelerations());
 }
 
-/// x, with zero in place of what fixed points have.
+/// Eq. (6) or (13) for what it changes: nothing has to cancel, and M is not needed. Before Φq is
+/// evaluated at the final q', it is that of the factors. With v, x is the acceleration; `given`: ṡ
+/// or s̈.
 template <typename S, typename F, int D>
-const S* Stepper<S, F, D>::without_fixed(const S* x) {
-  if (!system_.drivers.any()) return x;
-  std::copy(x, x + system_.program.padded, difference_.data());
-  return difference_.data();
-}
-
-/// Eq. (6) for what it changes. T is T₀ + (Δt²/4) α Φqᵀ Φq with the Φq of the last pass, so that
-/// (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing has to
-/// cancel, and M is not needed. With v, x is the acceleration.
-template <typename S, typename F, int D>
-void Stepper<S, F, D>::project_penalty(S* x, const S* v) {
+void Stepper<S, F, D>::project_once(S* x, const S* v, const S* given) {
   auto& s = system_;
-  S* y = s.y.data();
-  for (int i = 0; i < s.program.padded; ++i) y[i] = S(0.0);
-  const S factor = s.h * s.alpha;
-  s.constraints.add_projection(v == nullptr ? without_fixed(x) : x, v, factor, y);
-  if (s.drivers.any() && v == nullptr) s.drivers.add_rate_terms(s.constraints, factor, y);
-  if (s.drivers.any() && v != nullptr) s.drivers.add_acceleration_terms(s.constraints, factor, y);
-  phases_.enter(Phase::solve);
-  s.solve();
   phases_.enter(Phase::projection);
-  for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
-}
-
-/// Eq. (13) for what it changes, likewise; `terms` is Φt or Φ̇q v' + Φ̇t, nullptr: zero.
-template <typename S, typename F, int D>
-void Stepper<S, F, D>::project_saddle(S* x, const S* terms) {
-  auto& s = system_;
   std::fill(s.y.begin(), s.y.end(), S(0.0));
-  s.constraints.product(without_fixed(x), s.terms.data(), true);
-  for (int k = 0; terms != nullptr && k < s.constraints.count(); ++k) s.terms[k] += terms[k];
-  s.constrain(s.terms.data());
+  if (s.saddle) {
+    s.constraints.product(x, s.terms.data(), v, given);
+    s.constrain(s.terms.data());
+  } else {
+    s.constraints.add_projection(x, v, given, -s.h * s.alpha, s.y.data());
+  }
   phases_.enter(Phase::solve);
   s.solve();
   phases_.enter(Phase::projection);
-  s.take_multipliers(nullptr, S(0.0));
+  if (s.saddle) s.take_multipliers(nullptr, S(0.0));
   const S* y = s.y.data();
   for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
 }
 
-/// y = right-hand sides of Eq. (15) at x, given v* or a*.
+/// y = right-hand sides of Eq. (15) at x, with v* or a* in star_.
 template <typename S, typename F, int D>
-void Stepper<S, F, D>::refinement_residual(const S* x, const S* given, bool of_velocity) {
+void Stepper<S, F, D>::refinement_residual(const S* x, const S* v, const S* given) {
   auto& s = system_;
-  for (int i = 0; i < s.program.padded; ++i) difference_[i] = given[i] - x[i];
+  for (int i = 0; i < s.program.padded; ++i) difference_[i] = star_[i] - x[i];
   s.product(difference_.data());
   S* terms = s.terms.data();
-  s.constraints.product(x, terms);  // with what driven points have of v'
-  if (of_velocity) {
-    s.drivers.subtract_rates(terms);
-  } else {
-    for (int k = 0; k < s.constraints.count(); ++k) terms[k] += velocity_terms_[k];
-  }
+  s.constraints.product(x, terms, v, given);
   if (!s.saddle) {
     s.constrain(terms);
     return;
   }
   for (int k = 0; k < s.constraints.count(); ++k) terms[k] -= s.epsilon * multipliers_[k];
   s.constrain(terms);
-  for (int k = 0; k < s.constraints.count(); ++k) terms[k] = -multipliers_[k];
-  s.constraints.add_transposed(terms, s.y.data());
+  s.constraints.add_transposed(multipliers_.data(), S(-1.0), s.y.data());
 }
 
 /// Max|δ| of a solution; κ of the saddle-point form moves to `terms`.
@@ -126,15 +86,16 @@ bool Stepper<S, F, D>::renew_factors() {
 
 /// Eq. (15); false if a pivot was not accepted.
 template <typename S, typename F, int D>
-bool Stepper<S, F, D>::refine(S* x, const S* given, bool of_velocity, StepOutcome& outcome) {
+bool Stepper<S, F, D>::refine(S* x, const S* v, const S* given, StepOutcome& outcome) {
   auto& s = system_;
+  std::copy(x, x + s.program.padded, star_.data());
   const bool kept = settings_.tangent == TangentReuse::kept;
-  const S bound = (of_velocity ? S(2.0) / step_ : S(1.0) / s.h) * tolerance_;
+  const S bound = (v == nullptr ? S(2.0) / step_ : S(1.0) / s.h) * tolerance_;
   std::fill(multipliers_.begin(), multipliers_.end(), S(0.0));
   S previous = S(0.0);
   for (int i = 0; i < 5; ++i) {
     phases_.enter(Phase::projection);
-    refinement_residual(x, given, of_velocity);
+    refinement_residual(x, v, given);
     if (kept) right_hand_side_ = s.y;
     phases_.enter(Phase::solve);
     s.solve();

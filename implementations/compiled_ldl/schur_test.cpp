@@ -73,7 +73,7 @@ double residual(System<double, double, D>& s, const Array<double>& given) {
   for (int k = 0; k < s.constraints.count(); ++k) mu[k] = x[s.constraints.row(k)];
   for (const int row : s.rows.of_coordinate) points[row] = x[row];
   s.product(points.data());
-  s.constraints.add_transposed(mu.data(), s.y.data());
+  s.constraints.add_transposed(mu.data(), 1.0, s.y.data());
   s.constraints.product(points.data(), rows.data());
   double worst = 0.0;
   for (const int row : s.rows.of_coordinate)

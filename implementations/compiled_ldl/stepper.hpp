@@ -26,16 +26,15 @@ class Stepper final : public Simulation {
   bool factorizes(int pass) const;
   bool solve_pass(StepOutcome& outcome);
   S apply_pass();
+  bool finish(bool updates, StepOutcome& outcome);
   void judge_factors(int pass, S change, S previous);
   // projections.hpp
   bool project(StepOutcome& outcome);
-  void project_saddle(S* x, const S* terms);
-  void project_penalty(S* x, const S* v);
-  bool refine(S* x, const S* given, bool of_velocity, StepOutcome& outcome);
+  void project_once(S* x, const S* v, const S* given);
+  bool refine(S* x, const S* v, const S* given, StepOutcome& outcome);
   S take_correction();
   bool renew_factors();
-  void refinement_residual(const S* x, const S* given, bool of_velocity);
-  const S* without_fixed(const S* x);
+  void refinement_residual(const S* x, const S* v, const S* given);
   // rattle.hpp
   StepOutcome rattle_step();
   bool stage(S length, StepOutcome& outcome);
@@ -55,12 +54,13 @@ class Stepper final : public Simulation {
   StepSettings settings_;
   System<S, F, D> system_;
   bool reuses_, refines_;
+  bool at_final_;  // projections have Φq of the final q'
   S step_, tolerance_;
   bool due_ = true;              // factors are to be renewed
   int unprojected_ = 0;          // steps since the last projection
-  Array<S> velocity_terms_;      // of constraints: Φt or Φ̇q v' + Φ̇t
+  Array<S> velocity_terms_;      // of constraints: Φ̇q v' for RATTLE
   Array<S> star_, multipliers_;  // refinement: v* or a*, ν
-  Array<S> difference_;          // coordinates, zero at fixed points
+  Array<S> difference_;          // refinement: v* − v' or a* − a'
   Array<S> right_hand_side_;
   std::unique_ptr<History> history_;  // of the multistep method
   bool is_complete_ = true;           // v, a and λ are those of q
@@ -75,6 +75,7 @@ Stepper<S, F, D>::Stepper(const Model& model, const StepSettings& settings)
       system_(std::vector<const Model*>{&model}, std::vector<StepSettings>{settings}),
       reuses_(settings.tangent != TangentReuse::none),
       refines_(reuses_ || !std::is_same_v<S, F>),
+      at_final_(refines_ || (!system_.saddle && std::is_same_v<S, float>)),
       step_(static_cast<S>(settings.step)),
       tolerance_(static_cast<S>(settings.tolerance)),
       velocity_terms_(system_.constraints.count(), S(0.0)),
@@ -126,7 +127,7 @@ StepOutcome Stepper<S, F, D>::trapezoidal_step() {
   if (reuses_) outcome.factorizations = 0;
   if (system_.drivers.any()) system_.drive(time());
   predict();
-  if (!run_passes(outcome) || !project(outcome)) {
+  if (!run_passes(outcome)) {
     outcome.status = StepStatus::factorization_failed;
     due_ = true;
   }
@@ -158,21 +159,35 @@ bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
   bool updated = false;
   S previous = S(0.0);
   outcome.status = StepStatus::pass_limit;
-  for (int pass = 1; pass <= settings_.max_passes; ++pass) {
+  for (int pass = 1;; ++pass) {
     outcome.passes = pass;
     if (!solve_pass(outcome)) return false;
     const S change = apply_pass();
     const bool converged = change <= tolerance_;
     judge_factors(pass, change, previous);
     previous = change;
-    if (converged && (!at_convergence || updated)) {
-      outcome.status = StepStatus::converged;
-      break;
+    const bool updates = !system_.saddle && (converged || !at_convergence);
+    if (converged && (!at_convergence || updated)) outcome.status = StepStatus::converged;
+    if (outcome.status == StepStatus::converged || pass == settings_.max_passes) {
+      return finish(updates, outcome);
     }
+    phases_.enter(Phase::evaluation);
+    updates ? system_.evaluate_and_update() : system_.evaluate();
     updated = converged;
   }
+}
+
+/// Projections and λ, after the last correction.
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::finish(bool updates, StepOutcome& outcome) {
   if (outcome.status == StepStatus::pass_limit) due_ = true;
-  return true;
+  phases_.enter(Phase::evaluation);
+  if (at_final_) {
+    updates ? system_.evaluate_and_update() : system_.evaluate();
+  } else if (updates) {
+    system_.update();
+  }
+  return project(outcome);
 }
 
 template <typename S, typename F, int D>
@@ -210,20 +225,12 @@ bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   return system_.factorize_and_solve();
 }
 
-/// q', v', a' and λ with the solution; max|Δq|.
+/// q', v', a' and λ of the saddle-point form with the solution; max|Δq|.
 template <typename S, typename F, int D>
 S Stepper<S, F, D>::apply_pass() {
   phases_.enter(Phase::other);
   if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
-  const S change = system_.apply(S(2.0) / step_);
-  phases_.enter(Phase::evaluation);
-  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
-  if (system_.saddle || (at_convergence && !(change <= tolerance_))) {
-    system_.evaluate();
-  } else {
-    system_.evaluate_and_update();
-  }
-  return change;
+  return system_.apply(S(2.0) / step_);
 }
 
 /// Factors that are kept become due when convergence slows.

@@ -31,6 +31,10 @@ class System {
   void evaluate_and_update() {
     constraints.evaluate_and_update(q.data(), phi.data(), alpha, lambda.data());
   }
+  /// λ += α Φ alone; gradients stay.
+  void update() {
+    constraints.values(q.data(), [&](int k, const S& value) { lambda[k] += alpha * value; });
+  }
 
   /// y = −f of Eq. (3), or the right-hand side of Eq. (12), in two parts: without the forces of the
   /// constraints, and these. assemble() belongs between them, if a pass `renews` the matrix. Then,
@@ -40,7 +44,7 @@ class System {
   void finish_residual();
   /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and the last forces.
   void assemble();
-  /// The matrix of Eq. (5), in the other lanes the one that they had.
+  /// The matrix of Eq. (5), with the last forces in these lanes only.
   void assemble_where(const LaneMask& mask);
   /// y = solution; false if a pivot was not accepted.
   bool factorize_and_solve();
@@ -134,7 +138,7 @@ System<S, F, D>::System(std::span<const Model* const> models,
 
 template <typename S, typename F, int D>
 void System<S, F, D>::drive(double t) {
-  drivers.drive(t, q.data(), v.data(), constraints, force.data());
+  drivers.drive(t, q.data(), v.data(), a.data(), constraints, force.data());
   if constexpr (kDouble) {
     if (!schur_) return;
     free_ = force;
@@ -237,8 +241,7 @@ void System<S, F, D>::assemble() {
 template <typename S, typename F, int D>
 void System<S, F, D>::assemble_where(const LaneMask& mask) {
   fronts.start();
-  constraints.keep_where(mask);
-  constraints.add_penalty(fronts.matrix(), h * alpha, true);
+  constraints.add_penalty(fronts.matrix(), h * alpha);
   if (!forces.has_stiffness()) return;
   forces.keep_where(mask);
   forces.add_matrix(fronts.matrix());
@@ -318,9 +321,7 @@ void System<S, F, D>::constrain(const S* t) {
     for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -t[k];
     return;
   }
-  const S factor = -h * alpha;
-  for (int k = 0; k < constraints.count(); ++k) terms[k] = factor * t[k];
-  constraints.add_transposed(terms.data(), y.data());
+  constraints.add_transposed(t, -h * alpha, y.data());
 }
 
 template <typename S, typename F, int D>

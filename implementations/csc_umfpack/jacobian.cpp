@@ -1,4 +1,4 @@
-// Phi, Phi_q and the products with it.
+// Phi and Phi_q, derivatives of Phi by time.
 #include "jacobian.hpp"
 
 namespace mbs::csc_umfpack {
@@ -35,13 +35,7 @@ void Jacobian<D>::evaluate(const double* x, double* Phi) {
     J += 2 * D;
   }
   Phi = evaluate_products(x, Phi, J);
-  for (const auto& linear : layout_.linears) {
-    double sum = -linear.value;
-    for (int t = linear.first; t < linear.last; ++t) {
-      sum += layout_.terms[t].coefficient * x[layout_.terms[t].coordinate];
-    }
-    *Phi++ = sum;  // Eq. (8)
-  }
+  for (const auto& row : layout_.linears) *Phi++ = sum(row, x) - row.value;  // Eq. (8)
 }
 
 template <int D>
@@ -67,37 +61,48 @@ double* Jacobian<D>::evaluate_products(const double* x, double* Phi, double* J) 
 }
 
 template <int D>
-void Jacobian<D>::add_product(const double* x, double factor, double* y) const {
-  const double* J = values_.data();
-  for (const auto& block : layout_.blocks) {
-    y[block.row] += factor * dot(at<D>(J, 0), at<D>(x, block.offset));
-    J += D;
-  }
-  y += layout_.order.size() - layout_.linears.size();
-  for (const auto& linear : layout_.linears) {
-    for (int t = linear.first; t < linear.last; ++t) {
-      *y += factor * (layout_.terms[t].coefficient * x[layout_.terms[t].coordinate]);
+void Jacobian<D>::rates(const double* x, const double* v, double* y) const {
+  for (const auto* rows : {&layout_.pins, &layout_.links}) {
+    for (const auto& row : *rows) {
+      *y++ = 2.0 * dot(difference<D>(x, row.a, row.b), difference<D>(v, row.a, row.b));
     }
-    ++y;
+  }
+  for (const auto& row : layout_.dots) {
+    *y++ = dot(difference<D>(v, row.a, row.b), difference<D>(x, row.c, row.d)) +
+           dot(difference<D>(x, row.a, row.b), difference<D>(v, row.c, row.d));
+  }
+  for (const auto& row : layout_.bilinears) {
+    *y++ = dot(difference<D>(v, row.a, row.b), product(row.B, difference<D>(x, row.c, row.d))) +
+           dot(difference<D>(x, row.a, row.b), product(row.B, difference<D>(v, row.c, row.d)));
+  }
+  for (const auto& row : layout_.linears) *y++ = sum(row, v);
+}
+
+template <int D>
+void Jacobian<D>::second_rates(const double* x, const double* v, const double* a, double* y) const {
+  rates(x, a, y);
+  for (const auto* rows : {&layout_.pins, &layout_.links}) {
+    for (const auto& row : *rows) {
+      double u[D];
+      *y++ += 2.0 * squared_difference(v, row.a, row.b, u);  // Eq. (7)
+    }
+  }
+  for (const auto& row : layout_.dots) {
+    *y++ += 2.0 * dot(difference<D>(v, row.a, row.b), difference<D>(v, row.c, row.d));  // Eq. (7)
+  }
+  for (const auto& row : layout_.bilinears) {
+    const Vector<D> Bw = product(row.B, difference<D>(v, row.c, row.d));
+    *y++ += 2.0 * dot(difference<D>(v, row.a, row.b), Bw);  // Eq. (7)
   }
 }
 
 template <int D>
-void Jacobian<D>::add_velocity_term(const double* v, double factor, double* y) const {
-  const double twice = 2.0 * factor;
-  for (const auto* rows : {&layout_.pins, &layout_.links}) {
-    for (const auto& row : *rows) {
-      double u[D];
-      *y++ += twice * squared_difference(v, row.a, row.b, u);  // Eq. (7)
-    }
+double Jacobian<D>::sum(const JacobianLayout::Linear& row, const double* x) const {
+  double sum = 0.0;
+  for (int t = row.first; t < row.last; ++t) {
+    sum += layout_.terms[t].coefficient * x[layout_.terms[t].coordinate];
   }
-  for (const auto& row : layout_.dots) {
-    *y++ += twice * dot(difference<D>(v, row.a, row.b), difference<D>(v, row.c, row.d));  // Eq. (7)
-  }
-  for (const auto& row : layout_.bilinears) {
-    const Vector<D> Bw = product(row.B, difference<D>(v, row.c, row.d));
-    *y++ += twice * dot(difference<D>(v, row.a, row.b), Bw);  // Eq. (7)
-  }
+  return sum;
 }
 
 template <int D>

@@ -1,4 +1,4 @@
-// Phi, Phi_q and the products with it.
+// Phi and Phi_q, derivatives of Phi by time.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace mbs::csc_umfpack {
 
-/// Phi and Phi_q in D dimensions. Rows and x are those of the layout, which it keeps.
+/// Phi and Phi_q in D dimensions. Rows and x are those of the layout, which it keeps; v and a are
+/// laid out like x, with zeros for points at rest.
 template <int D>
 class Jacobian {
  public:
@@ -23,17 +24,18 @@ class Jacobian {
 
   /// Phi (m) and Phi_q at x.
   void evaluate(const double* x, double* Phi);
-  /// y (m) += factor Phi_q x, x (n).
-  void add_product(const double* x, double factor, double* y) const;
-  /// y (m) += factor times what velocities v alone give of the second derivative of Phi; v is laid
-  /// out like x of evaluate(), with zeros for points at rest.
-  void add_velocity_term(const double* v, double factor, double* y) const;
+  /// y (m) = the first derivative of Phi by time at x, as if values were constant.
+  void rates(const double* x, const double* v, double* y) const;
+  /// y (m) = the second one, likewise.
+  void second_rates(const double* x, const double* v, const double* a, double* y) const;
   /// y (n) -= Phi_q^T z, z (m).
   void subtract_transpose_product(const double* z, double* y) const;
 
  private:
   /// The rows of dots and bilinears, whose blocks start at J; returns where Phi goes on.
   double* evaluate_products(const double* x, double* Phi, double* J) const;
+  /// Sum c_k x_k of a linear row, Eq. (8).
+  [[nodiscard]] double sum(const JacobianLayout::Linear& row, const double* x) const;
 
   JacobianLayout layout_;
   std::vector<double> values_;

@@ -28,33 +28,16 @@ void PenaltySystem<D>::add_constraints(const double* lambda, const double* Phi, 
 }
 
 template <int D>
-void PenaltySystem<D>::update_multipliers(const double* Phi, double* lambda) const {
+void PenaltySystem<D>::update_multipliers(const double* Phi, const double*, double* lambda) const {
   const int m = jacobian_.layout().rows();
   for (int row = 0; row < m; ++row) lambda[row] += penalty_ * Phi[row];  // Eq. (1)
 }
 
 template <int D>
-void PenaltySystem<D>::start_projection(const double* moving, double* rhs) {
-  std::ranges::fill(row_factors_, 0.0);
-  jacobian_.add_product(moving, factor_, row_factors_.data());
+void PenaltySystem<D>::project(const double* rates, double* rhs) {
+  const int m = jacobian_.layout().rows();
+  for (int row = 0; row < m; ++row) row_factors_[row] = factor_ * rates[row];
   std::fill_n(rhs, size(), 0.0);
-  jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
-}
-
-template <int D>
-void PenaltySystem<D>::add_rates(const Drivers<D>& drivers, const double* q, double* rhs) {
-  if (drivers.empty()) return;
-  std::ranges::fill(row_factors_, 0.0);
-  drivers.add_rates(q, factor_, row_factors_.data());
-  jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
-}
-
-template <int D>
-void PenaltySystem<D>::add_accelerations(const Drivers<D>& drivers, const double* q,
-                                         const double* v, double* rhs) {
-  std::ranges::fill(row_factors_, 0.0);
-  jacobian_.add_velocity_term(v, factor_, row_factors_.data());
-  if (!drivers.empty()) drivers.add_accelerations(q, factor_, row_factors_.data());
   jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // Eq. (6)
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "assembly.hpp"
-#include "drivers.hpp"
 #include "forces.hpp"
 #include "jacobian.hpp"
 #include "mbs/simulation.hpp"
@@ -27,18 +26,14 @@ class PenaltySystem {
   void add_constraints(const double* lambda, const double* Phi, double* rhs);
   void assemble() { tangent_.update(jacobian_, forces_); }
   [[nodiscard]] bool factorize() { return solver_.factorize(tangent_.values()); }
-  /// x (n) = the solution for the coordinates.
-  void solve(const double* rhs, double* x) { solver_.solve(rhs, x); }
+  /// The solution has the length of right-hand sides; it too starts with the coordinates.
+  void solve(const double* rhs, double* solution) { solver_.solve(rhs, solution); }
   /// Eq. (1), with Phi of the new q'.
-  void update_multipliers(const double* Phi, double* lambda) const;
+  void update_multipliers(const double* Phi, const double* solution, double* lambda) const;
 
-  /// rhs = the share that Phi_q of the last pass, still in the Jacobian, has in the right-hand side
-  /// of Eq. (6) solved for v' - v* or a' - a*; `moving` (n) is v* or a*.
-  void start_projection(const double* moving, double* rhs);
-  /// Complete these right-hand sides with Phi_q of the final q'; q and v are laid out as x of the
-  /// layout.
-  void add_rates(const Drivers<D>& drivers, const double* q, double* rhs);
-  void add_accelerations(const Drivers<D>& drivers, const double* q, const double* v, double* rhs);
+  /// The right-hand side of Eq. (6) solved for v' - v* or a' - a*; `rates` (m) are Phi_q v* +
+  /// Phi_t, or what stands there for a*. Phi_q is that in T, still in the Jacobian.
+  void project(const double* rates, double* rhs);
 
  private:
   const Jacobian<D>& jacobian_;

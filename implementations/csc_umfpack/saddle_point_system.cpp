@@ -16,8 +16,7 @@ SaddlePointSystem<D>::SaddlePointSystem(const MassMatrix& mass, const Jacobian<D
       quarter_(settings.step * settings.step / 4.0),
       matrix_(mass, jacobian.layout(), forces.layout(), 1.0 / (quarter_ * settings.penalty)),
       solver_(matrix_.pattern(), tuning, matrix_.order()),
-      row_factors_(m_),
-      solution_(n_ + m_) {}
+      row_factors_(m_) {}
 
 template <int D>
 void SaddlePointSystem<D>::add_constraints(const double* lambda, const double* Phi, double* rhs) {
@@ -29,34 +28,16 @@ void SaddlePointSystem<D>::add_constraints(const double* lambda, const double* P
 }
 
 template <int D>
-void SaddlePointSystem<D>::solve(const double* rhs, double* x) {
-  solver_.solve(rhs, solution_.data());
-  std::copy_n(solution_.begin(), n_, x);
-}
-
-template <int D>
-void SaddlePointSystem<D>::update_multipliers(const double*, double* lambda) const {
-  const double* mu = solution_.data() + n_;
+void SaddlePointSystem<D>::update_multipliers(const double*, const double* solution,
+                                              double* lambda) const {
+  const double* mu = solution + n_;
   for (int row = 0; row < m_; ++row) lambda[row] += mu[row] / quarter_;
 }
 
 template <int D>
-void SaddlePointSystem<D>::start_projection(const double* moving, double* rhs) const {
-  std::fill_n(rhs, n_ + m_, 0.0);
-  jacobian_.add_product(moving, -1.0, rhs + n_);  // Eq. (13)
-}
-
-template <int D>
-void SaddlePointSystem<D>::add_rates(const Drivers<D>& drivers, const double* q,
-                                     double* rhs) const {
-  drivers.add_rates(q, -1.0, rhs + n_);  // Eq. (13)
-}
-
-template <int D>
-void SaddlePointSystem<D>::add_accelerations(const Drivers<D>& drivers, const double* q,
-                                             const double* v, double* rhs) const {
-  jacobian_.add_velocity_term(v, -1.0, rhs + n_);                      // Eq. (13)
-  if (!drivers.empty()) drivers.add_accelerations(q, -1.0, rhs + n_);  // Eq. (13)
+void SaddlePointSystem<D>::project(const double* rates, double* rhs) const {
+  std::fill_n(rhs, n_, 0.0);
+  for (int row = 0; row < m_; ++row) rhs[n_ + row] = -rates[row];  // Eq. (13)
 }
 
 template class SaddlePointSystem<2>;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "assembly.hpp"
-#include "drivers.hpp"
 #include "forces.hpp"
 #include "jacobian.hpp"
 #include "mbs/simulation.hpp"
@@ -26,19 +25,12 @@ class SaddlePointSystem {
   void add_constraints(const double* lambda, const double* Phi, double* rhs);
   void assemble() { matrix_.update(jacobian_, forces_); }
   [[nodiscard]] bool factorize() { return solver_.factorize(matrix_.values()); }
-  /// x (n) = the solution for the coordinates; that for the multipliers is kept.
-  void solve(const double* rhs, double* x);
-  /// lambda += (4 / Delta t^2) mu, with mu of the last solution.
-  void update_multipliers(const double* Phi, double* lambda) const;
+  void solve(const double* rhs, double* solution) { solver_.solve(rhs, solution); }
+  /// lambda += (4 / Delta t^2) mu, with mu of the solution.
+  void update_multipliers(const double* Phi, const double* solution, double* lambda) const;
 
-  /// rhs = the share that Phi_q of the last pass, still in the Jacobian, has in the right-hand side
-  /// of Eq. (13) solved for v' - v* or a' - a*; `moving` (n) is v* or a*.
-  void start_projection(const double* moving, double* rhs) const;
-  /// Complete these right-hand sides; q and v are those of the end of the step, laid out as x of
-  /// the layout.
-  void add_rates(const Drivers<D>& drivers, const double* q, double* rhs) const;
-  void add_accelerations(const Drivers<D>& drivers, const double* q, const double* v,
-                         double* rhs) const;
+  /// The right-hand side of Eq. (13) solved for v' - v* or a' - a*.
+  void project(const double* rates, double* rhs) const;
 
  private:
   const Jacobian<D>& jacobian_;
@@ -49,7 +41,6 @@ class SaddlePointSystem {
   SaddlePointMatrix<D> matrix_;
   Solver solver_;
   std::vector<double> row_factors_;  ///< m, what multiplies the rows of Phi_q
-  std::vector<double> solution_;     ///< n + m
 };
 
 }  // namespace mbs::csc_umfpack

@@ -25,12 +25,13 @@ CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settin
       force_(model.force().begin(), model.force().end()),
       q_(n_ + points_.fixed.size(), 0.0),
       v_(q_.size(), 0.0),
-      a_(n_),
+      a_(q_.size(), 0.0),
       lambda_(m_),
       Phi_(m_),
+      rates_(m_),
       rhs_(system_.size()),
-      rhs_a_(system_.size()),
-      delta_(n_) {
+      delta_(system_.size()),
+      change_(system_.size()) {
   std::ranges::copy(points_.fixed, q_.begin() + n_);
 }
 
@@ -47,7 +48,7 @@ template <int D, template <int> class System>
 void CscUmfpack<D, System>::do_get_state(State& state) const {
   std::copy_n(q_.begin(), n_, state.q.begin());
   std::copy_n(v_.begin(), n_, state.v.begin());
-  std::ranges::copy(a_, state.a.begin());
+  std::copy_n(a_.begin(), n_, state.a.begin());
   const auto& order = jacobian_.layout().order;
   for (int row = 0; row < m_; ++row) state.lambda[order[row]] = lambda_[row];
 }
@@ -72,20 +73,18 @@ StepOutcome CscUmfpack<D, System>::do_step() {
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
     last = outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
-    if (last) start_projections();
-    update_multipliers();
+    if (last) project();
+    correct_position();
   }
-  project();
   phases_.enter(Phase::other);
   return outcome;
 }
 
 template <int D, template <int> class System>
 void CscUmfpack<D, System>::drive() {
-  drivers_.sample(time());
-  drivers_.move(q_.data(), v_.data());
-  drivers_.set_values(jacobian_);
-  drivers_.set_force(force_.data());
+  drivers_.move(time(), q_.data(), v_.data(), a_.data());
+  drivers_.set_values(time(), jacobian_);
+  drivers_.set_force(a_.data(), force_.data());
 }
 
 template <int D, template <int> class System>
@@ -114,52 +113,45 @@ template <int D, template <int> class System>
 bool CscUmfpack<D, System>::correct() {
   const double to_v = 2.0 / settings_.step, to_a = to_v * to_v;
   const double tolerance = settings_.tolerance;
-  double *q = q_.data(), *v = v_.data(), *a = a_.data();
+  double *v = v_.data(), *a = a_.data();
   const double* delta_q = delta_.data();
   int outside = 0;
   for (int i = 0; i < n_; ++i) {
     outside += !(std::abs(delta_q[i]) <= tolerance);  // a NaN is outside
-    q[i] += delta_q[i];
-    v[i] += to_v * delta_q[i];  // Eq. (2)
-    a[i] += to_a * delta_q[i];  // Eq. (2)
+    v[i] += to_v * delta_q[i];                        // Eq. (2)
+    a[i] += to_a * delta_q[i];                        // Eq. (2)
   }
   return outside == 0;
-}
-
-template <int D, template <int> class System>
-void CscUmfpack<D, System>::update_multipliers() {
-  phases_.enter(Phase::evaluation);
-  jacobian_.evaluate(q_.data(), Phi_.data());
-  system_.update_multipliers(Phi_.data(), lambda_.data());
-}
-
-template <int D, template <int> class System>
-void CscUmfpack<D, System>::start_projections() {
-  if (settings_.projections == Projections::none) return;
-  phases_.enter(Phase::projection);
-  system_.start_projection(v_.data(), rhs_.data());
-  if (settings_.projections == Projections::both) {
-    system_.start_projection(a_.data(), rhs_a_.data());
-  }
 }
 
 template <int D, template <int> class System>
 void CscUmfpack<D, System>::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  system_.add_rates(drivers_, q_.data(), rhs_.data());
-  add_solution(rhs_, v_);  // Eq. (6) or (13)
+  jacobian_.rates(q_.data(), v_.data(), rates_.data());
+  drivers_.subtract_rates(rates_.data());
+  add_projection(v_);
   if (settings_.projections == Projections::velocity) return;
-  system_.add_accelerations(drivers_, q_.data(), v_.data(), rhs_a_.data());
-  add_solution(rhs_a_, a_);  // Eq. (6) or (13)
+  jacobian_.second_rates(q_.data(), v_.data(), a_.data(), rates_.data());
+  drivers_.subtract_second_rates(rates_.data());
+  add_projection(a_);
 }
 
 template <int D, template <int> class System>
-void CscUmfpack<D, System>::add_solution(const std::vector<double>& rhs, std::vector<double>& x) {
+void CscUmfpack<D, System>::add_projection(std::vector<double>& x) {
+  system_.project(rates_.data(), rhs_.data());
   phases_.enter(Phase::solve);
-  system_.solve(rhs.data(), delta_.data());
+  system_.solve(rhs_.data(), change_.data());  // Eq. (6) or (13)
   phases_.enter(Phase::projection);
-  for (int i = 0; i < n_; ++i) x[i] += delta_[i];
+  for (int i = 0; i < n_; ++i) x[i] += change_[i];
+}
+
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::correct_position() {
+  phases_.enter(Phase::evaluation);
+  for (int i = 0; i < n_; ++i) q_[i] += delta_[i];
+  jacobian_.evaluate(q_.data(), Phi_.data());
+  system_.update_multipliers(Phi_.data(), delta_.data(), lambda_.data());
 }
 
 template class CscUmfpack<2, PenaltySystem>;

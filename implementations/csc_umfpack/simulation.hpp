@@ -23,22 +23,20 @@ class CscUmfpack final : public Simulation {
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
 
-  /// Step 0: positions and velocities of driven points, driven values, Q of driven masses.
+  /// Step 0: driven points, driven values, Q of driven masses.
   void drive();
   /// Step 1: q, v, a at the end of the step; Phi and Phi_q there.
   void predict();
   /// The right-hand side of a pass from q, v, a, lambda, Phi and Phi_q; the elements' values.
   void evaluate_residual();
-  /// Adds Delta q to the motion. True if all |Delta q| are within the tolerance, no NaN among them.
+  /// Corrects v and a. True if all |Delta q| are within the tolerance, no NaN among them.
   [[nodiscard]] bool correct();
-  /// Phi, Phi_q and lambda at the new q.
-  void update_multipliers();
-  /// Step 3: what the projections need of Phi_q of the last pass, before it is evaluated anew.
-  void start_projections();
-  /// Step 3: the projections.
+  /// Step 3: the projections, while q and Phi_q are still those of the last pass.
   void project();
-  /// x (n) += the solution for a right-hand side.
-  void add_solution(const std::vector<double>& rhs, std::vector<double>& x);
+  /// x (n) += what projects it, from its rates_.
+  void add_projection(std::vector<double>& x);
+  /// Corrects q; Phi, Phi_q and lambda there.
+  void correct_position();
 
   const StepSettings settings_;
   const int n_;
@@ -55,12 +53,13 @@ class CscUmfpack final : public Simulation {
 
   std::vector<double> q_;       ///< n, then the fixed points: x of the layout
   std::vector<double> v_;       ///< n, then those of the fixed points
-  std::vector<double> a_;       ///< n
+  std::vector<double> a_;       ///< likewise
   std::vector<double> lambda_;  ///< m, rows of the layout
   std::vector<double> Phi_;     ///< m, rows of the layout
+  std::vector<double> rates_;   ///< m, first or second derivative of Phi by time
   std::vector<double> rhs_;     ///< of the system
-  std::vector<double> rhs_a_;   ///< of the system, for a' - a* in Eq. (6) or (13)
-  std::vector<double> delta_;   ///< n, Delta q, v' - v* or a' - a*
+  std::vector<double> delta_;   ///< solution of the system: Delta q first
+  std::vector<double> change_;  ///< likewise: v' - v* or a' - a* first
 };
 
 }  // namespace mbs::csc_umfpack

@@ -15,14 +15,6 @@ struct Vector {
   double operator[](int k) const { return components[k]; }
 };
 
-/// The D numbers at an offset of x.
-template <int D>
-Vector<D> at(const double* x, int offset) {
-  Vector<D> u;
-  for (int k = 0; k < D; ++k) u[k] = x[offset + k];
-  return u;
-}
-
 /// x_a - x_b for offsets a and b.
 template <int D>
 Vector<D> difference(const double* x, int a, int b) {

@@ -28,9 +28,9 @@ Assembly<Scalar>::Assembly(const Model& model, const StepSettings& settings, con
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::evaluate(const Vector& q) {
-  constraints_.evaluate(q);
-  drivers_.subtract_values(constraints_.Phi());
+void Assembly<Scalar>::evaluate(const Vector& q, bool jacobian) {
+  constraints_.evaluate(q, jacobian);
+  drivers_.evaluate(q, constraints_.Phi());
 }
 
 template <typename Scalar>
@@ -87,51 +87,27 @@ void Assembly<Scalar>::kept_leading_product(const Vector& x, Vector& y) const {
 }
 
 template <typename Scalar>
-const Eigen::VectorX<Scalar>& Assembly<Scalar>::velocity_term(const Vector& q) {
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::velocity_error(const Vector& v) {
   term_.setZero();
-  if (!drivers_.empty()) drivers_.add_velocity_term(q, term_);
+  if (!drivers_.empty()) drivers_.add_velocity_term(term_);
+  constraints_.add_product(v, term_);
   return term_;
 }
 
 template <typename Scalar>
-const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_term(const Vector& q,
-                                                                  const Vector& v) {
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_term(const Vector& v) {
   term_.setZero();  // the rows of linear constraints are not written by the next line
   constraints_.velocity_term(v, term_);
-  if (!drivers_.empty()) drivers_.add_acceleration_term(q, term_);
+  if (!drivers_.empty()) drivers_.add_acceleration_term(term_);
   return term_;
 }
 
 template <typename Scalar>
-const Eigen::VectorX<Scalar>& Assembly<Scalar>::velocity_error(const Vector& q, const Vector& v) {
-  velocity_term(q);
-  term_.noalias() += constraints_.jacobian_transposed().transpose() * v.head(variables_);
-  return term_;
-}
-
-template <typename Scalar>
-const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_error(const Vector& q, const Vector& v,
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_error(const Vector& v,
                                                                    const Vector& a) {
-  acceleration_term(q, v);
-  term_.noalias() += constraints_.jacobian_transposed().transpose() * a;
+  acceleration_term(v);
+  constraints_.add_product(a, term_);
   return term_;
-}
-
-template <typename Scalar>
-void Assembly<Scalar>::subtract_penalty(const Vector& term, Vector& rhs) const {
-  if (term.size() == 0) return;
-  rhs.noalias() -= scale_ * penalty_ * (constraints_.jacobian_transposed() * term);
-}
-
-template <typename Scalar>
-void Assembly<Scalar>::finish_velocity(const Vector& q, Vector& rhs) {
-  if (!drivers_.empty()) subtract_penalty(velocity_term(q), rhs);  // Eq. (6)
-}
-
-template <typename Scalar>
-void Assembly<Scalar>::finish_acceleration(const Vector& q, const Vector& v, Vector& rhs) {
-  if (constraints_.quadratic() == 0 && drivers_.empty()) return;
-  subtract_penalty(acceleration_term(q, v), rhs);  // Eq. (6)
 }
 
 template class Assembly<double>;

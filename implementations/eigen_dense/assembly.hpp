@@ -32,8 +32,9 @@ class Assembly {
     forces_.drive(t);
   }
 
-  /// Phi and Phi_q at q (m). All other methods use this Phi_q.
-  void evaluate(const Vector& q);
+  /// Phi and Phi_q at q (m). All other methods use this Phi_q; Φt and Φ̇t are of this q, too.
+  /// Without `jacobian` Phi alone, and nothing else may be called but Phi().
+  void evaluate(const Vector& q, bool jacobian = true);
 
   /// Phi (m) of the last evaluate().
   [[nodiscard]] const Vector& Phi() const { return constraints_.Phi(); }
@@ -69,29 +70,18 @@ class Assembly {
   /// T₀ x into y (n), with the C and K of the last keep_leading() and x of n elements.
   void kept_leading_product(const Vector& x, Vector& y) const;
 
-  /// J x into y (m), J being Phi_q and x having n elements or more.
-  void jacobian_product(const Vector& x, Vector& y) const { constraints_.product(x, y); }
-
-  /// Φt (m) at q, in a buffer that the next call of any of these four overwrites.
-  const Vector& velocity_term(const Vector& q);
+  /// Φq v + Φt (m): by how much v misses its constraints. In a buffer that the next call of any of
+  /// these three overwrites.
+  const Vector& velocity_error(const Vector& v);
   /// Φ̇q v + Φ̇t (m), likewise.
-  const Vector& acceleration_term(const Vector& q, const Vector& v);
-  /// Φq v + Φt (m), likewise: by how much v misses its constraints.
-  const Vector& velocity_error(const Vector& q, const Vector& v);
+  const Vector& acceleration_term(const Vector& v);
   /// Φq a + Φ̇q v + Φ̇t (m), likewise.
-  const Vector& acceleration_error(const Vector& q, const Vector& v, const Vector& a);
+  const Vector& acceleration_error(const Vector& v, const Vector& a);
 
-  /// rhs (n) −= (Δt²/4) α Φqᵀ term, with term (m) of Eqs. (6) and (15).
-  void subtract_penalty(const Vector& term, Vector& rhs) const;
-
-  /// −(Δt²/4) α Jᵀ J x into rhs (n), with v* or a* for x: Eq. (6) for what it changes. To be called
-  /// as long as J is that of the last tangent(), which is before the evaluate() at the final q'.
-  void start_projection(const Vector& x, Vector& rhs) const {
-    constraints_.normal_product(-scale_ * penalty_, x, rhs);
+  /// rhs (n) −= (Δt²/4) α Φqᵀ error, with error (m) of Eqs. (6) and (15).
+  void subtract_penalty(const Vector& error, Vector& rhs) const {
+    constraints_.add_transposed_product(-scale_ * penalty_, error, rhs);
   }
-  /// Makes it the right-hand side for v' − v*, then that for a' − a* with the projected v'.
-  void finish_velocity(const Vector& q, Vector& rhs);
-  void finish_acceleration(const Vector& q, const Vector& v, Vector& rhs);
 
  private:
   using Index = Eigen::Index;
@@ -108,7 +98,7 @@ class Assembly {
   Matrix M_and_linear_;  ///< M + (Δt²/4) α Φqᵀ Φq of linear constraints; else 0×0
   Vector scaled_force_;  ///< (Δt²/4) Q, its constant part
   Vector multiplier_;    ///< lambda + alpha Phi
-  Vector term_;          ///< what the four functions return
+  Vector term_;          ///< what the three functions return
 };
 
 }  // namespace mbs::eigen_dense

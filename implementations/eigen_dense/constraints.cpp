@@ -102,39 +102,39 @@ void Constraints<Scalar>::clear_driven_values(const Model& model) {
 
 template <typename Scalar>
 template <int dimension>
-void Constraints<Scalar>::evaluate_quadratic(const Scalar* q) {
+void Constraints<Scalar>::evaluate_quadratic(const Scalar* q, bool jacobian) {
   using Point = Eigen::Matrix<Scalar, dimension, 1>;
-  Scalar* const jacobian = jacobian_.data();
+  const auto entry = [start = jacobian_.data()](Index to) { return Eigen::Map<Point>(start + to); };
   Scalar* const Phi = Phi_.data();
   for (const Distance& distance : distances_) {  // Eq. (7) with a = c, b = d
     const Point ab = difference<dimension>(q, distance.a, distance.b);
     Phi[distance.row] = ab.squaredNorm() - distance.value;
-    Eigen::Map<Point>(jacobian + distance.to_a) = Scalar(2) * ab;
-    Eigen::Map<Point>(jacobian + distance.to_b) = Scalar(-2) * ab;
+    if (!jacobian) continue;
+    entry(distance.to_a) = Scalar(2) * ab;
+    entry(distance.to_b) = Scalar(-2) * ab;
   }
-  const auto write_slots = [jacobian](const Dot& dot, const Point& ab, const Point& cd) {
-    for (const auto& slot : dot.slots) {
-      Eigen::Map<Point>(jacobian + slot.to) = slot.ab * ab + slot.cd * cd;
-    }
+  const auto write_slots = [&](const Dot& dot, const Point& ab, const Point& cd) {
+    for (const auto& slot : dot.slots) entry(slot.to) = slot.ab * ab + slot.cd * cd;
   };
   for (const Dot& dot : dots_) {  // Eq. (7)
     const Point ab = difference<dimension>(q, dot.a, dot.b);
     const Point cd = difference<dimension>(q, dot.c, dot.d);
     Phi[dot.row] = ab.dot(cd) - dot.value;
-    write_slots(dot, ab, cd);
+    if (jacobian) write_slots(dot, ab, cd);
   }
   for (const auto& [dot, full_B] : bilinears_) {  // Eq. (7)
     const auto B = full_B.template topLeftCorner<dimension, dimension>();
     const Point ab = difference<dimension>(q, dot.a, dot.b);
     const Point Bcd = B * difference<dimension>(q, dot.c, dot.d);
     Phi[dot.row] = ab.dot(Bcd) - dot.value;
-    write_slots(dot, B.transpose() * ab, Bcd);
+    if (jacobian) write_slots(dot, B.transpose() * ab, Bcd);
   }
 }
 
 template <typename Scalar>
-void Constraints<Scalar>::evaluate(const Vector& q) {
-  dimension_ == 2 ? evaluate_quadratic<2>(q.data()) : evaluate_quadratic<3>(q.data());
+void Constraints<Scalar>::evaluate(const Vector& q, bool jacobian) {
+  dimension_ == 2 ? evaluate_quadratic<2>(q.data(), jacobian)
+                  : evaluate_quadratic<3>(q.data(), jacobian);
   for (const Linear& linear : linears_) {  // Eq. (8)
     Scalar sum = -linear.value;
     for (Index k = linear.begin; k < linear.end; ++k) {
@@ -169,28 +169,23 @@ void Constraints<Scalar>::velocity_term(const Vector& v, Vector& term) const {
 }
 
 template <typename Scalar>
-void Constraints<Scalar>::product(const Vector& x, Vector& y) const {
+void Constraints<Scalar>::add_product(const Vector& x, Vector& y) const {
   const Scalar* column = jacobian_.data();
   Index k = 0;
   for (std::size_t row = 0; row < ends_.size(); ++row, column += variables_) {
     Scalar sum = 0;
     for (; k < ends_[row]; ++k) sum += column[coordinates_[k]] * x[coordinates_[k]];
-    y[row] = sum;
+    y[row] += sum;
   }
 }
 
 template <typename Scalar>
-void Constraints<Scalar>::normal_product(Scalar factor, const Vector& x, Vector& y) const {
-  y.setZero();
+void Constraints<Scalar>::add_transposed_product(Scalar factor, const Vector& x, Vector& y) const {
   const Scalar* column = jacobian_.data();
-  Index begin = 0;
-  for (const Index end : ends_) {
-    Scalar sum = 0;
-    for (Index k = begin; k < end; ++k) sum += column[coordinates_[k]] * x[coordinates_[k]];
-    sum *= factor;
-    for (Index k = begin; k < end; ++k) y[coordinates_[k]] += sum * column[coordinates_[k]];
-    begin = end;
-    column += variables_;
+  Index k = 0;
+  for (std::size_t row = 0; row < ends_.size(); ++row, column += variables_) {
+    const Scalar scaled = factor * x[row];
+    for (; k < ends_[row]; ++k) y[coordinates_[k]] += scaled * column[coordinates_[k]];
   }
 }
 

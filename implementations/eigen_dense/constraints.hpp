@@ -21,16 +21,16 @@ class Constraints {
 
   Constraints(const Model& model, const Layout& layout);
 
-  /// Phi and Phi_q at the extended position q (m).
-  void evaluate(const Vector& q);
+  /// Phi at the extended position q (m), with `jacobian` also Phi_q.
+  void evaluate(const Vector& q, bool jacobian);
 
   /// 2 u̇·B ẇ of Eq. (7) into `term` (m, m²/s²), with v extended; not the rows of linear ones.
   void velocity_term(const Vector& v, Vector& term) const;
 
-  /// J x into y (m), J being Phi_q of the last evaluate() and x having n elements or more.
-  void product(const Vector& x, Vector& y) const;
-  /// factor Jᵀ J x into y (n), likewise.
-  void normal_product(Scalar factor, const Vector& x, Vector& y) const;
+  /// y (m) += Φq x, with x of n elements or more.
+  void add_product(const Vector& x, Vector& y) const;
+  /// y (n) += factor Φqᵀ x, with x of m elements.
+  void add_transposed_product(Scalar factor, const Vector& x, Vector& y) const;
 
   /// Adds factor × the share of the linear constraints in Φqᵀ Φq to both triangles of T (n×n).
   void add_linear_share(Scalar factor, Matrix& T) const;
@@ -38,7 +38,7 @@ class Constraints {
   /// Of the last evaluate() (m).
   [[nodiscard]] const Vector& Phi() const { return Phi_; }
   [[nodiscard]] Vector& Phi() { return Phi_; }
-  /// n×m, of the last evaluate().
+  /// n×m, of the last evaluate() that wrote it.
   [[nodiscard]] Eigen::Map<const Matrix> jacobian_transposed() const {
     return {jacobian_.data(), variables_, Phi_.size()};
   }
@@ -93,7 +93,7 @@ class Constraints {
   void list_coordinates(const Model& model, const Layout& layout);
   void clear_driven_values(const Model& model);
   template <int dimension>
-  void evaluate_quadratic(const Scalar* q);
+  void evaluate_quadratic(const Scalar* q, bool jacobian);
   template <int dimension>
   void evaluate_velocity_term(const Scalar* v, Scalar* term) const;
 

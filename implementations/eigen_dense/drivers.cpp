@@ -10,7 +10,7 @@ Drivers<Scalar>::Drivers(const Model& model, const Layout& layout)
     values_.push_back({driven.constraint, driven.value, {}});
   }
   if (model.driven_points().empty()) return;
-  velocity_ = acceleration_ = Vector::Zero(layout.extended_size());
+  velocity_ = acceleration_ = q_ = Vector::Zero(layout.extended_size());
   for (const DrivenPoint& driven : model.driven_points()) {
     points_.push_back({layout.start(driven.point), driven.position});
   }
@@ -61,7 +61,8 @@ void Drivers<Scalar>::drive(double t, Vector& q, Vector& v) {
 }
 
 template <typename Scalar>
-void Drivers<Scalar>::subtract_values(Vector& Phi) const {
+void Drivers<Scalar>::evaluate(const Vector& q, Vector& Phi) {
+  if (!points_.empty()) q_ = q;
   for (const Value& value : values_) Phi[value.row] -= Scalar(value.now.value);
 }
 
@@ -74,7 +75,8 @@ void Drivers<Scalar>::add_force(Scalar factor, Vector& rhs) const {
 
 template <typename Scalar>
 template <int dimension>
-void Drivers<Scalar>::add_products(const Scalar* q, const Scalar* rates, Scalar* term) const {
+void Drivers<Scalar>::add_products(const Scalar* rates, Scalar* term) const {
+  const Scalar* const q = q_.data();
   for (const Quadratic& constraint : quadratics_) {
     const auto [a, b, c, d, full_B, row] = constraint;
     const Eigen::Matrix<Scalar, dimension, dimension> B =
@@ -85,20 +87,20 @@ void Drivers<Scalar>::add_products(const Scalar* q, const Scalar* rates, Scalar*
 }
 
 template <typename Scalar>
-void Drivers<Scalar>::add_products(const Vector& q, const Vector& rates, Vector& term) const {
-  dimension_ == 2 ? add_products<2>(q.data(), rates.data(), term.data())
-                  : add_products<3>(q.data(), rates.data(), term.data());
+void Drivers<Scalar>::add_products(const Vector& rates, Vector& term) const {
+  dimension_ == 2 ? add_products<2>(rates.data(), term.data())
+                  : add_products<3>(rates.data(), term.data());
 }
 
 template <typename Scalar>
-void Drivers<Scalar>::add_velocity_term(const Vector& q, Vector& term) const {
-  add_products(q, velocity_, term);                                              // Eq. (7)
+void Drivers<Scalar>::add_velocity_term(Vector& term) const {
+  add_products(velocity_, term);                                                 // Eq. (7)
   for (const Value& value : values_) term[value.row] -= Scalar(value.now.rate);  // Eqs. (7), (8)
 }
 
 template <typename Scalar>
-void Drivers<Scalar>::add_acceleration_term(const Vector& q, Vector& term) const {
-  add_products(q, acceleration_, term);  // Eq. (7)
+void Drivers<Scalar>::add_acceleration_term(Vector& term) const {
+  add_products(acceleration_, term);  // Eq. (7)
   for (const Value& value : values_)
     term[value.row] -= Scalar(value.now.acceleration);  // Eqs. (7), (8)
 }

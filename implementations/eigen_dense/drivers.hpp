@@ -24,17 +24,17 @@ class Drivers {
   /// Takes all values at time t (s) and puts the driven points into the extended q and v.
   void drive(double t, Vector& q, Vector& v);
 
-  /// Phi (m) −= the driven values.
-  void subtract_values(Vector& Phi) const;
+  /// Phi (m) −= the driven values. The two terms are from now on those at the extended position q.
+  void evaluate(const Vector& q, Vector& Phi);
 
   /// rhs (n) += factor × the driven mass's part of Q.
   void add_force(Scalar factor, Vector& rhs) const;
 
-  /// term (m) += Φt at the extended position q.
-  void add_velocity_term(const Vector& q, Vector& term) const;
+  /// term (m) += Φt.
+  void add_velocity_term(Vector& term) const;
 
-  /// term (m) += u_p''·B w + u·B w_p'' − s̈ of Eqs. (7) and (8) at the extended position q.
-  void add_acceleration_term(const Vector& q, Vector& term) const;
+  /// term (m) += u_p''·B w + u·B w_p'' − s̈ of Eqs. (7) and (8).
+  void add_acceleration_term(Vector& term) const;
 
  private:
   using Index = Eigen::Index;
@@ -63,8 +63,8 @@ class Drivers {
   void lower_constraints(const Model& model, const Layout& layout);
   /// term += u_p·B w + u·B w_p with the rates of the driven points in `rates`, extended.
   template <int dimension>
-  void add_products(const Scalar* q, const Scalar* rates, Scalar* term) const;
-  void add_products(const Vector& q, const Vector& rates, Vector& term) const;
+  void add_products(const Scalar* rates, Scalar* term) const;
+  void add_products(const Vector& rates, Vector& term) const;
 
   int dimension_;
   std::vector<MovedPoint> points_;
@@ -72,6 +72,7 @@ class Drivers {
   std::vector<Mass> mass_;
   std::vector<Quadratic> quadratics_;
   Vector velocity_, acceleration_;  ///< extended, zero but at driven points
+  Vector q_;                        ///< extended, of the last evaluate(); empty without such points
 };
 
 }  // namespace mbs::eigen_dense

@@ -14,13 +14,18 @@ namespace mbs::eigen_dense {
 
 namespace {
 
-/// How often Eq. (15) is solved at most; 0: Eq. (6) or (13) is instead. In single precision the
-/// penalty form with new factors solves it once: with the one pass a step that float's tolerance
-/// asks for, Eq. (6) would drift.
-int refinements(const StepSettings& settings) {
-  if (settings.tangent != TangentReuse::none || settings.precision == Precision::mixed) return 5;
-  const bool penalty = settings.scheme == Scheme::penalty;
-  return penalty && settings.precision == Precision::single_precision ? 1 : 0;
+constexpr int kMostSolutions = 5;
+
+/// Whether Eq. (15) is repeated.
+bool refines(const StepSettings& settings) {
+  return settings.tangent != TangentReuse::none || settings.precision == Precision::mixed;
+}
+
+/// Whether they are at the final q', as in Eq. (15). In single precision the penalty form solves it
+/// once: with the one pass a step that float's tolerance asks for, Eq. (6) would drift.
+bool projects_at_end(const StepSettings& settings) {
+  return refines(settings) ||
+         (settings.scheme == Scheme::penalty && settings.precision == Precision::single_precision);
 }
 
 }  // namespace
@@ -29,7 +34,8 @@ template <typename System>
 Newton<System>::Newton(const Model& model, const StepSettings& settings)
     : mbs::Simulation(model, settings),
       settings_(settings),
-      refinements_(refinements(settings)),
+      refines_(refines(settings)),
+      projects_at_end_(projects_at_end(settings)),
       layout_(model),
       system_(model, settings, layout_),
       motion_(model, layout_),
@@ -55,7 +61,7 @@ StepOutcome Newton<System>::do_step() {
   unprojected_ = (unprojected_ + 1) % settings_.projections_every;
   projected_ = unprojected_ == 0 && settings_.projections != Projections::none;
   StepOutcome outcome{StepStatus::pass_limit, 0, 0};
-  if (!iterate(outcome) || !project(outcome)) outcome.status = StepStatus::factorization_failed;
+  if (!iterate(outcome)) outcome.status = StepStatus::factorization_failed;
   schedule_.end_step(outcome.status);
   phases_.enter(Phase::other);
   return outcome;
@@ -65,26 +71,26 @@ template <typename System>
 bool Newton<System>::iterate(StepOutcome& outcome) {
   const bool every_pass = settings_.multipliers == MultiplierUpdate::every_pass;
   bool was_small = false;  // of the pass before
-  while (outcome.passes < settings_.max_passes) {
+  bool last = false;
+  while (!last) {
     ++outcome.passes;
     bool small = false;
     if (!pass(outcome, small)) return false;
-    const bool converged = small && (every_pass || was_small);
-    if (projected_ && refinements_ == 0 && (converged || outcome.passes == settings_.max_passes)) {
-      phases_.enter(Phase::projection);
-      system_.start_projections(motion_);
-    }
+    if (small && (every_pass || was_small)) outcome.status = StepStatus::converged;
+    last = outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+    // The projection overwrites the solution; after it only what is still asked for is evaluated.
+    if (!System::multipliers_from_Phi) system_.update_multipliers(motion_.lambda);
+    if (last && !projects_at_end_ && !project(outcome)) return false;
     phases_.enter(Phase::evaluation);
-    system_.assembly().evaluate(motion_.q);
+    const bool jacobian = !last || projects_at_end_;
+    if (jacobian || System::multipliers_from_Phi) system_.assembly().evaluate(motion_.q, jacobian);
     phases_.enter(Phase::other);
-    if (every_pass || small) system_.update_multipliers(motion_.lambda);
-    if (converged) {
-      outcome.status = StepStatus::converged;
-      return true;
+    if (System::multipliers_from_Phi && (every_pass || small)) {
+      system_.update_multipliers(motion_.lambda);
     }
     was_small = small;
   }
-  return true;
+  return !projects_at_end_ || project(outcome);
 }
 
 template <typename System>
@@ -116,30 +122,26 @@ bool Newton<System>::factorize(StepOutcome& outcome) {
 template <typename System>
 bool Newton<System>::project(StepOutcome& outcome) {
   if (!projected_) return true;
-  const bool both = settings_.projections == Projections::both;
-  if (refinements_ > 0) {
-    const double bound = 2 / settings_.step * settings_.tolerance;
-    return refine(&System::refine_velocity, motion_.v, bound, outcome) &&
-           (!both ||
-            refine(&System::refine_acceleration, motion_.a, 2 / settings_.step * bound, outcome));
-  }
-  solve(&System::project_velocity);  // Eq. (6) or (13)
-  motion_.v.head(motion_.a.size()) += system_.correction();
-  if (!both) return true;
-  solve(&System::project_acceleration);  // Eq. (6) or (13)
-  motion_.a += system_.correction();
-  return true;
+  const double bound = 2 / settings_.step * settings_.tolerance;
+  if (!project(&System::project_velocity, motion_.v, bound, outcome)) return false;
+  if (settings_.projections == Projections::velocity) return true;
+  return project(&System::project_acceleration, motion_.a, 2 / settings_.step * bound, outcome);
 }
 
 template <typename System>
-bool Newton<System>::refine(MakeRightHandSide make, Vector& target, double tolerance,
-                            StepOutcome& outcome) {
+bool Newton<System>::project(MakeRightHandSide make, Vector& target, double tolerance,
+                             StepOutcome& outcome) {
   auto x = target.head(motion_.a.size());
-  start_ = x;
   phases_.enter(Phase::projection);
-  system_.begin_refinement();
+  system_.begin_projection();
+  if (!refines_) {
+    solve(make);
+    x += system_.correction();  // Eq. (6) or (13), or Eq. (15) once
+    return true;
+  }
+  start_ = x;
   double size_before = 0.0;
-  for (int k = 1; k <= refinements_; ++k) {
+  for (int k = 1; k <= kMostSolutions; ++k) {
     solve(make);
     double size = largest(system_.correction());
     if (k > 1 && !(size <= size_before / 2)) {  // a NaN is slower, too
@@ -149,11 +151,11 @@ bool Newton<System>::refine(MakeRightHandSide make, Vector& target, double toler
       size = largest(system_.correction());
     }
     x += system_.correction();  // Eq. (15)
-    if (size <= tolerance || k == refinements_) return true;
+    if (size <= tolerance || k == kMostSolutions) return true;
     size_before = size;
     phases_.enter(Phase::projection);
     change_ = start_ - x;
-    system_.continue_refinement(change_);
+    system_.continue_projection(change_);
   }
   return true;
 }

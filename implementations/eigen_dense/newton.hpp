@@ -31,21 +31,22 @@ class Newton final : public mbs::Simulation {
   [[nodiscard]] bool factorize(StepOutcome& outcome);
   /// The same at the final q', where C and K have not been evaluated yet; overwrites change_.
   [[nodiscard]] bool factorize_here(StepOutcome& outcome);
-  /// The passes of a step; sets the outcome's status and counts.
+  /// The passes of a step and its projections; sets the outcome's status and counts.
   [[nodiscard]] bool iterate(StepOutcome& outcome);
   /// One pass up to the correction of the motion. Leaves the phase at `other`; `small` says whether
   /// max|Δq| is within the tolerance.
   [[nodiscard]] bool pass(StepOutcome& outcome, bool& small);
   [[nodiscard]] bool project(StepOutcome& outcome);
-  /// Refines v' or a', as `make` asks for, until max|δ| ≤ tolerance: Eq. (15).
-  [[nodiscard]] bool refine(MakeRightHandSide make, Vector& target, double tolerance,
-                            StepOutcome& outcome);
+  /// Projects v or a, as `make` asks for. A refinement goes on until max|δ| ≤ tolerance.
+  [[nodiscard]] bool project(MakeRightHandSide make, Vector& target, double tolerance,
+                             StepOutcome& outcome);
 
   /// Makes a right-hand side and solves. Leaves the phase at `solve`.
   void solve(MakeRightHandSide make);
 
   StepSettings settings_;
-  int refinements_;
+  bool refines_;          ///< repeats Eq. (15)
+  bool projects_at_end_;  ///< after the evaluation at the final q'; else before it
   Layout layout_;
   System system_;
   Motion<Scalar> motion_;

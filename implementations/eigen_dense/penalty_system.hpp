@@ -19,6 +19,8 @@ class PenaltySystem {
  public:
   using Scalar = Number;
   using Vector = Eigen::VectorX<Scalar>;
+  /// What update_multipliers() needs: the evaluation at the new q', or else the last solve().
+  static constexpr bool multipliers_from_Phi = true;
 
   PenaltySystem(const Model& model, const StepSettings& settings, const Layout& layout)
       : penalty_(Scalar(settings.penalty)),
@@ -47,32 +49,20 @@ class PenaltySystem {
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
 
-  /// To be called before the evaluation at the final q', with v* and a*: the Jacobian is still that
-  /// of the last pass.
-  void start_projections(const Motion<Scalar>& motion) {
-    assembly_.start_projection(motion.v, x_);
-    assembly_.start_projection(motion.a, lag_);
+  /// The right-hand sides of Eq. (15); the first of each are those of Eq. (6) for v' − v* and
+  /// a' − a*.
+  void project_velocity(const Motion<Scalar>& motion) {
+    x_ = lag_;
+    assembly_.subtract_penalty(assembly_.velocity_error(motion.v), x_);
   }
-  /// The right-hand sides of Eq. (6) for v' − v*, then for a' − a* with that v'.
-  void project_velocity(const Motion<Scalar>& motion) { assembly_.finish_velocity(motion.q, x_); }
   void project_acceleration(const Motion<Scalar>& motion) {
     x_ = lag_;
-    assembly_.finish_acceleration(motion.q, motion.v, x_);
+    assembly_.subtract_penalty(assembly_.acceleration_error(motion.v, motion.a), x_);
   }
-
-  /// Those of Eq. (15).
-  void refine_velocity(const Motion<Scalar>& motion) {
-    x_ = lag_;
-    assembly_.subtract_penalty(assembly_.velocity_error(motion.q, motion.v), x_);
-  }
-  void refine_acceleration(const Motion<Scalar>& motion) {
-    x_ = lag_;
-    assembly_.subtract_penalty(assembly_.acceleration_error(motion.q, motion.v, motion.a), x_);
-  }
-  /// To be called before the first refinement of a vector and between the following ones, with
+  /// To be called before the first right-hand side of a vector and between the following ones, with
   /// v* − v' or a* − a' in `change` (n).
-  void begin_refinement() { lag_.setZero(); }
-  void continue_refinement(const Vector& change) {
+  void begin_projection() { lag_.setZero(); }
+  void continue_projection(const Vector& change) {
     assembly_.kept_leading_product(change, lag_);
     stiffness_.add_product(change, lag_);
   }
@@ -90,7 +80,7 @@ class PenaltySystem {
   Stiffness stiffness_;
   LinearSolver solver_;
   Eigen::MatrixXf jacobian_;  ///< Φqᵀ in float, if only the matrix is; else 0×0
-  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'; in Eq. (6) the part of a*
+  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'
   Vector x_;                  ///< n; right-hand side, then solution
 };
 

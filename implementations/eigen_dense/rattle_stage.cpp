@@ -95,7 +95,7 @@ void RattleStage<Scalar>::find_velocity(Scalar h) {
   phases_.enter(Phase::projection);
   v = change_ / h;
   impulse_ = h / 2 * force_;
-  solve(impulse_, assembly_.velocity_error(motion_.q, motion_.v));
+  solve(impulse_, assembly_.velocity_error(motion_.v));
   v += upper();
   refine_velocity();
 }
@@ -106,7 +106,7 @@ void RattleStage<Scalar>::refine_velocity() {
   auto v = motion_.v.head(motion_.a.size());
   for (int k = 0; k < kRefinements; ++k) {
     phases_.enter(Phase::projection);
-    solve(zero_, assembly_.velocity_error(motion_.q, motion_.v));
+    solve(zero_, assembly_.velocity_error(motion_.v));
     v += upper();
     if (largest(upper()) <= bound) break;
   }
@@ -116,12 +116,12 @@ template <typename Scalar>
 void RattleStage<Scalar>::find_acceleration() {
   const Scalar bound = Scalar(4 / (settings_.step * settings_.step) * settings_.tolerance);
   phases_.enter(Phase::projection);
-  solve(force_, assembly_.acceleration_term(motion_.q, motion_.v));
+  solve(force_, assembly_.acceleration_term(motion_.v));
   motion_.a = upper();
   motion_.lambda = lower();
   for (int k = 0; k < kRefinements; ++k) {
     phases_.enter(Phase::projection);
-    solve(zero_, assembly_.acceleration_error(motion_.q, motion_.v, motion_.a));
+    solve(zero_, assembly_.acceleration_error(motion_.v, motion_.a));
     motion_.a += upper();
     motion_.lambda += lower();
     if (largest(upper()) <= bound) break;

@@ -16,6 +16,7 @@ class SaddleSystem {
  public:
   using Scalar = Number;
   using Vector = Eigen::VectorX<Scalar>;
+  static constexpr bool multipliers_from_Phi = false;
 
   SaddleSystem(const Model& model, const StepSettings& settings, const Layout& layout)
       : multiplier_factor_(Scalar(4 / (settings.step * settings.step))),
@@ -25,8 +26,6 @@ class SaddleSystem {
         solver_(model.variables(), model.constraints(), MatrixScalar(epsilon_)),
         upper_(Vector::Zero(model.variables())),
         nu_(Vector::Zero(model.constraints())),
-        velocity_rate_(nu_),
-        acceleration_rate_(nu_),
         x_(Vector::Zero(model.variables() + model.constraints())) {
     if (!constant_leading()) return;
     assembly_.leading(solver_.leading());
@@ -38,7 +37,8 @@ class SaddleSystem {
   /// The right-hand side of Eq. (12). C and K are from now on those of this motion.
   void residual(const Motion<Scalar>& motion) {
     assembly_.plain_residual(motion.q, motion.v, motion.a, motion.lambda, upper_);
-    fill(assembly_.Phi());
+    x_.head(upper_.size()) = upper_;
+    x_.tail(nu_.size()) = -assembly_.Phi();
   }
   /// The matrix of Eq. (12) with the last Jacobian, C and K.
   void assemble(const Vector& lambda) {
@@ -55,37 +55,21 @@ class SaddleSystem {
     return solver_.factorize();
   }
 
-  /// To be called before the evaluation at the final q', with v* and a*: the Jacobian is still that
-  /// of the last pass.
-  void start_projections(const Motion<Scalar>& motion) {
-    assembly_.jacobian_product(motion.v, velocity_rate_);
-    assembly_.jacobian_product(motion.a, acceleration_rate_);
-    upper_.setZero();
-  }
-  /// The right-hand sides of Eq. (13) for v' − v*, then for a' − a* with that v'.
+  /// The right-hand sides of Eq. (15); the first of each are those of Eq. (13) for v' − v* and
+  /// a' − a*.
   void project_velocity(const Motion<Scalar>& motion) {
-    velocity_rate_ += assembly_.velocity_term(motion.q);
-    fill(velocity_rate_);
+    fill_projection(assembly_.velocity_error(motion.v));
   }
   void project_acceleration(const Motion<Scalar>& motion) {
-    acceleration_rate_ += assembly_.acceleration_term(motion.q, motion.v);
-    fill(acceleration_rate_);
+    fill_projection(assembly_.acceleration_error(motion.v, motion.a));
   }
-
-  /// Those of Eq. (15).
-  void refine_velocity(const Motion<Scalar>& motion) {
-    fill_refinement(assembly_.velocity_error(motion.q, motion.v));
-  }
-  void refine_acceleration(const Motion<Scalar>& motion) {
-    fill_refinement(assembly_.acceleration_error(motion.q, motion.v, motion.a));
-  }
-  /// To be called before the first refinement of a vector and between the following ones, with
+  /// To be called before the first right-hand side of a vector and between the following ones, with
   /// v* − v' or a* − a' in `change` (n).
-  void begin_refinement() {
+  void begin_projection() {
     upper_.setZero();
     nu_.setZero();
   }
-  void continue_refinement(const Vector& change) {
+  void continue_projection(const Vector& change) {
     assembly_.kept_leading_product(change, upper_);
     stiffness_.add_product(change, upper_);
     if (nu_.size() == 0) return;
@@ -107,14 +91,9 @@ class SaddleSystem {
     return assembly_.constant_leading() && stiffness_.empty();
   }
 
-  void fill(const Vector& minus_lower) {
+  void fill_projection(const Vector& error) {
     x_.head(upper_.size()) = upper_;
-    x_.tail(minus_lower.size()) = -minus_lower;
-  }
-
-  void fill_refinement(const Vector& error) {
-    fill(error);
-    x_.tail(nu_.size()) += epsilon_ * nu_;
+    x_.tail(nu_.size()) = epsilon_ * nu_ - error;
   }
 
   Scalar multiplier_factor_;  ///< 4/Δt², 1/s²
@@ -122,10 +101,9 @@ class SaddleSystem {
   Assembly<Scalar> assembly_;
   Stiffness stiffness_;
   LinearSolver solver_;
-  Vector upper_;                              ///< n; the upper part of a right-hand side
-  Vector nu_;                                 ///< m; ν of a refined projection
-  Vector velocity_rate_, acceleration_rate_;  ///< m; J v* and J a*, then with the other terms
-  Vector x_;                                  ///< n + m; right-hand side, then solution
+  Vector upper_;  ///< n; the upper part of a right-hand side
+  Vector nu_;     ///< m; ν of a refined projection
+  Vector x_;      ///< n + m; right-hand side, then solution
 };
 
 /// With the exact tangent.

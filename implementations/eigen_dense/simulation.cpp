@@ -10,8 +10,7 @@ Simulation::Simulation(const Model& model, const StepSettings& settings)
       assembly_(model, settings, layout_),
       solver_(model.variables()),
       motion_(model, layout_),
-      solution_(Eigen::VectorXd::Zero(model.variables())),
-      acceleration_change_(solution_) {}
+      solution_(Eigen::VectorXd::Zero(model.variables())) {}
 
 StepOutcome Simulation::do_step() {
   phases_.enter(Phase::other);
@@ -23,7 +22,6 @@ StepOutcome Simulation::do_step() {
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     pass(outcome);
   }
-  if (outcome.status != StepStatus::factorization_failed) project();
   return outcome;
 }
 
@@ -44,37 +42,30 @@ void Simulation::pass(StepOutcome& outcome) {
   }
   const bool converged = motion_.correct(solution_.data(), settings_.step, settings_.tolerance);
   if (converged) outcome.status = StepStatus::converged;
-  if (converged || outcome.passes == settings_.max_passes) start_projections();
+  const bool last = converged || outcome.passes == settings_.max_passes;
+  if (last) project();
   phases_.enter(Phase::evaluation);
-  assembly_.evaluate(motion_.q);
+  assembly_.evaluate(motion_.q, !last);
   phases_.enter(Phase::other);
   motion_.lambda += settings_.penalty * assembly_.Phi();  // Eq. (1)
-}
-
-void Simulation::start_projections() {
-  if (settings_.projections == Projections::none) return;
-  phases_.enter(Phase::projection);
-  assembly_.start_projection(motion_.v, solution_);
-  if (settings_.projections == Projections::both) {
-    assembly_.start_projection(motion_.a, acceleration_change_);
-  }
 }
 
 void Simulation::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.finish_velocity(motion_.q, solution_);
+  solve_projection(assembly_.velocity_error(motion_.v));
+  motion_.v.head(motion_.a.size()) += solution_;
+  if (settings_.projections == Projections::velocity) return;
+  phases_.enter(Phase::projection);
+  solve_projection(assembly_.acceleration_error(motion_.v, motion_.a));
+  motion_.a += solution_;
+}
+
+void Simulation::solve_projection(const Eigen::VectorXd& error) {
+  solution_.setZero();
+  assembly_.subtract_penalty(error, solution_);
   phases_.enter(Phase::solve);
   solver_.solve(solution_);  // Eq. (6)
-  motion_.v.head(motion_.a.size()) += solution_;
-  if (settings_.projections == Projections::both) {
-    phases_.enter(Phase::projection);
-    assembly_.finish_acceleration(motion_.q, motion_.v, acceleration_change_);
-    phases_.enter(Phase::solve);
-    solver_.solve(acceleration_change_);  // Eq. (6)
-    motion_.a += acceleration_change_;
-  }
-  phases_.enter(Phase::other);
 }
 
 }  // namespace mbs::eigen_dense

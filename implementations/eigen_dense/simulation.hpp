@@ -22,20 +22,21 @@ class Simulation final : public mbs::Simulation {
   StepOutcome do_step() override;
   void do_get_state(State& state) const override { motion_.get(state); }
 
-  /// One Newton pass, with the multiplier update, counted. Leaves the phase at `other`. The status
-  /// becomes `converged` if max|Δq| is within the tolerance.
+  /// One Newton pass, with the multiplier update, counted; the last one with the projections.
+  /// Leaves the phase at `other`. The status becomes `converged` if max|Δq| is within the
+  /// tolerance.
   void pass(StepOutcome& outcome);
-  /// What the projections need of the last pass's Jacobian.
-  void start_projections();
+  /// Eq. (6), before the evaluation at the final q'.
   void project();
+  /// Solves Eq. (6) for a change, with Φq v* + Φt or Φq a* + Φ̇q v' + Φ̇t for `error` (m).
+  void solve_projection(const Eigen::VectorXd& error);
 
   StepSettings settings_;
   Layout layout_;
   Assembly<double> assembly_;
   Solver<double> solver_;
   Motion<double> motion_;
-  Eigen::VectorXd solution_;             ///< n; right-hand side, then solution of a linear system
-  Eigen::VectorXd acceleration_change_;  ///< n; the same for a' − a*
+  Eigen::VectorXd solution_;  ///< n; right-hand side, then solution of a linear system
 };
 
 }  // namespace mbs::eigen_dense

@@ -11,8 +11,7 @@ class LaneGroup {
   LaneGroup(std::span<const Model* const> models, std::span<const StepSettings> settings)
       : settings_(settings[0]),
         tolerance_(of_settings<Lanes>(settings, &StepSettings::tolerance)),
-        system_(models, settings),
-        free_(system_.rows.extent, Lanes(0.0)) {}
+        system_(models, settings) {}
 
   void set_state(int lane, const State& state) {
     system_.put(lane, state);
@@ -27,18 +26,19 @@ class LaneGroup {
 
  private:
   void predict();
-  void evaluate() { system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false); }
   /// Applies the last solution in the lanes of `active`; max|Δq|.
   Lanes apply(const LaneMask& active);
+  /// λ += α Φ in the lanes of `corrected`; gradients in those that go on, the others keep theirs
+  /// for the projections.
+  void update(const LaneMask& corrected, const LaneMask& active);
   void project();
-  void project_once(Lanes* x, const Lanes* v);
+  void project_once(Lanes* x, const Lanes* v, const Lanes* given);
 
   StepSettings settings_;
   Lanes tolerance_;
   System<Lanes, Lanes, D> system_;
   LaneMask running_{};
   int unprojected_ = 0;
-  Array<Lanes> free_;
 };
 
 template <int D>
@@ -46,9 +46,9 @@ void LaneGroup<D>::step(double time, std::span<StepOutcome> outcomes) {
   if (!any(running_)) return;
   if (system_.drivers.any()) system_.drive(time);
   predict();
-  evaluate();
+  system_.evaluate();
   LaneMask active = running_;
-  for (int pass = 1; pass <= settings_.max_passes && any(active); ++pass) {
+  for (int pass = 1; any(active); ++pass) {
     system_.begin_residual();
     system_.finish_residual();
     system_.assemble_where(active);
@@ -63,7 +63,10 @@ void LaneGroup<D>::step(double time, std::span<StepOutcome> outcomes) {
                                                    : StepStatus::pass_limit,
                      .passes = pass};
     }
+    const LaneMask corrected = active;
     active &= ~(failed | converged);
+    if (pass == settings_.max_passes) active = LaneMask{};
+    update(corrected, active);
   }
   project();
 }
@@ -100,11 +103,20 @@ Lanes LaneGroup<D>::apply(const LaneMask& active) {
     v[i] += to_v * y;
     a[i] += to_a * y;
   }
-  evaluate();
-  for (int k = 0; k < system_.constraints.count(); ++k) {
-    system_.lambda[k] += select(active, system_.alpha * system_.phi[k]);
-  }
   return most + sum;
+}
+
+template <int D>
+void LaneGroup<D>::update(const LaneMask& corrected, const LaneMask& active) {
+  auto& s = system_;
+  if (any(active)) {
+    s.constraints.evaluate_where(active, s.q.data(), s.phi.data());
+  } else {
+    s.constraints.values(s.q.data(), [&](int k, const Lanes& value) { s.phi[k] = value; });
+  }
+  for (int k = 0; k < s.constraints.count(); ++k) {
+    s.lambda[k] += select(corrected, s.alpha * s.phi[k]);
+  }
 }
 
 template <int D>
@@ -112,28 +124,19 @@ void LaneGroup<D>::project() {
   if (settings_.projections == Projections::none) return;
   if (++unprojected_ < settings_.projections_every) return;
   unprojected_ = 0;
-  project_once(system_.v.data(), nullptr);
+  project_once(system_.v.data(), nullptr, system_.drivers.rates());
   if (settings_.projections == Projections::velocity) return;
-  project_once(system_.a.data(), system_.v.data());
+  project_once(system_.a.data(), system_.v.data(), system_.drivers.accelerations());
 }
 
-/// As Stepper::project_penalty().
+/// As Stepper::project_once().
 template <int D>
-void LaneGroup<D>::project_once(Lanes* x, const Lanes* v) {
+void LaneGroup<D>::project_once(Lanes* x, const Lanes* v, const Lanes* given) {
   auto& s = system_;
-  Lanes* y = s.y.data();
-  for (int i = 0; i < s.program.size; ++i) y[i] = 0.0;
-  const Lanes* given = x;
-  if (s.drivers.any() && v == nullptr) {  // without what fixed points have
-    std::copy(x, x + s.program.size, free_.data());
-    given = free_.data();
-  }
-  const Lanes factor = s.h * s.alpha;
-  s.constraints.add_projection(given, v, factor, y);
-  if (s.drivers.any() && v == nullptr) s.drivers.add_rate_terms(s.constraints, factor, y);
-  if (s.drivers.any() && v != nullptr) s.drivers.add_acceleration_terms(s.constraints, factor, y);
+  for (int i = 0; i < s.program.size; ++i) s.y[i] = 0.0;
+  s.constraints.add_projection(x, v, given, -s.h * s.alpha, s.y.data());
   s.solve();
-  for (int i = 0; i < s.program.size; ++i) x[i] += y[i];
+  for (int i = 0; i < s.program.size; ++i) x[i] += s.y[i];
 }
 
 }  // namespace mbs::compiled_ldl

@@ -19,13 +19,13 @@ void Constraints<S, D>::add_constant(F* matrix, const S& s) const {
 
 template <typename S, int D>
 template <typename F>
-void Constraints<S, D>::add_penalty(F* matrix, const S& s, bool earlier) const {
+void Constraints<S, D>::add_penalty(F* matrix, const S& s) const {
   const S s4 = s * S(4.0);  // two factors 2 of Φq
-  const S* u = (earlier ? earlier_u_ : u_).data();
+  const S* u = u_.data();
   int k = 0;
   for (; k < pairs_.two; ++k, u += D) add_pair<D>(matrix, pairs_.list[k], 2, s4, u);
   for (; k < pairs_.one; ++k, u += D) add_pair<D>(matrix, pairs_.list[k], 1, s4, u);
-  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
+  const S* vectors = vectors_.data();
   for (const Quad& quad : quads_) {
     add_quad<D>(matrix, quad, places_.data(), s, vectors + 2 * D);
     vectors += kQuad;

@@ -1,9 +1,6 @@
 // Constraints: values and products with the Jacobian. Part of constraints.hpp.
 #pragma once
 
-#include <algorithm>
-#include <type_traits>
-
 #include "elements/constraints.hpp"
 
 namespace mbs::compiled_ldl {
@@ -20,11 +17,7 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
 
 template <typename S, int D>
 template <typename Then>
-void Constraints<S, D>::evaluate_with(const S* q, S* phi, bool exchange, Then then) {
-  if (exchange) {
-    u_.swap(earlier_u_);
-    vectors_.swap(earlier_vectors_);
-  }
+void Constraints<S, D>::evaluate_with(const S* q, S* phi, Then then) {
   int k = 0;
   S* u = u_.data();
   for (const Pair& pair : pairs_.list) {
@@ -100,8 +93,8 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
 }
 
 template <typename S, int D>
-void Constraints<S, D>::add_transposed(const S* t, S* y) const {
-  add_gradients([t](int k) { return t[k]; }, y);
+void Constraints<S, D>::add_transposed(const S* t, const S& factor, S* y) const {
+  add_gradients([&](int k) { return factor * t[k]; }, y);
 }
 
 template <typename S, int D>
@@ -110,30 +103,82 @@ void Constraints<S, D>::add_forces(const S* lambda, const S* phi, const S& alpha
   add_gradients([&](int k) { return -h * (lambda[k] + alpha * phi[k]); }, y);
 }
 
+/// Half of Φq x of a distance, + u̇·u̇ if there is v.
 template <typename S, int D>
-void Constraints<S, D>::product(const S* x, S* t, bool earlier) const {
+inline S Constraints<S, D>::half_pair_rate(int k, const S* x, const S* v) const {
+  const Pair& pair = pairs_.list[k];
+  const S* u = u_.data() + k * D;
+  S sum = S(0.0), square = S(0.0);
+  for (int i = 0; i < D; ++i) sum += u[i] * (x[pair.a + i] - x[pair.b + i]);
+  if (v == nullptr) return sum;
+  for (int i = 0; i < D; ++i) {
+    const S rate = v[pair.a + i] - v[pair.b + i];
+    square += rate * rate;
+  }
+  return sum + square;
+}
+
+/// Φq x of another quadratic one, + 2 u̇·B ẇ.
+template <typename S, int D>
+inline S Constraints<S, D>::quad_rate(int i, const S* x, const S* v) const {
+  const Quad& quad = quads_[i];
+  const S* a = vectors_.data() + i * kQuad;
+  S sum = S(0.0);
+  for (int j = 0; j < D; ++j) {
+    sum += a[j] * (x[quad.a + j] - x[quad.b + j]) + a[D + j] * (x[quad.c + j] - x[quad.d + j]);
+  }
+  return v == nullptr ? sum : sum + quad_velocity_term(i, v);
+}
+
+template <typename S, int D>
+void Constraints<S, D>::product(const S* x, S* t, const S* v, const S* given) const {
   int k = 0;
-  const S* u = (earlier ? earlier_u_ : u_).data();
-  for (const Pair& pair : pairs_.list) {
-    S sum = S(0.0);
-    for (int i = 0; i < D; ++i) sum += u[i] * (x[pair.a + i] - x[pair.b + i]);
-    t[k++] = sum * S(2.0);
-    u += D;
-  }
-  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
-  for (const Quad& quad : quads_) {
-    S sum = S(0.0);
-    for (int i = 0; i < D; ++i) {
-      sum += vectors[i] * (x[quad.a + i] - x[quad.b + i]) +
-             vectors[D + i] * (x[quad.c + i] - x[quad.d + i]);
-    }
-    t[k++] = sum;
-    vectors += kQuad;
-  }
+  for (; k < pairs_.count(); ++k) t[k] = S(2.0) * half_pair_rate(k, x, v);
+  for (int i = 0; i < static_cast<int>(quads_.size()); ++i) t[k++] = quad_rate(i, x, v);
   for (const Terms& terms : linear_) {
     S sum = S(0.0);
     for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
     t[k++] = sum;
+  }
+  for (k = 0; given != nullptr && k < count(); ++k) t[k] -= given[k];
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_projection(const S* x, const S* v, const S* given, const S& f,
+                                       S* y) const {
+  const S f2 = S(2.0) * f, f4 = S(4.0) * f;
+  int k = 0;
+  for (; k < pairs_.one; ++k) {
+    const Pair& pair = pairs_.list[k];
+    const S* u = u_.data() + k * D;
+    S s = f4 * half_pair_rate(k, x, v);
+    if (given != nullptr) s -= f2 * given[k];
+    // All is read before anything is written, which the compiler need not prove then.
+    S at_a[D], at_b[D];
+    for (int i = 0; i < D; ++i) {
+      at_a[i] = y[pair.a + i] + s * u[i];
+      at_b[i] = y[pair.b + i] - s * u[i];
+    }
+    for (int i = 0; i < D; ++i) y[pair.a + i] = at_a[i];
+    if (k >= pairs_.two) continue;
+    for (int i = 0; i < D; ++i) y[pair.b + i] = at_b[i];
+  }
+  k = pairs_.count();
+  for (int i = 0; i < static_cast<int>(quads_.size()); ++i, ++k) {
+    const Quad& quad = quads_[i];
+    const S* g = vectors_.data() + i * kQuad + 2 * D;
+    S s = f * quad_rate(i, x, v);
+    if (given != nullptr) s -= f * given[k];
+    for (int p = 0; p < quad.free; ++p) {
+      for (int j = 0; j < D; ++j) y[quad.points[p].row + j] += s * g[p * D + j];
+    }
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
+    const S s = f * (given == nullptr ? sum : sum - given[k]);
+    ++k;
+    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += s * term_coefficients_[i];
   }
 }
 
@@ -225,117 +270,6 @@ void Constraints<S, D>::gradient_numbers(Then then) const {
     for (int x = 0; x < 2 * D; ++x) then(k, x, vectors_[i * kQuad + x]);
   }
   for (; k < count(); ++k) then(k, 0, S(1.0));
-}
-
-// Right-hand sides of the projections in one sweep.
-
-template <typename S, int D>
-void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y) const {
-  constexpr bool kPresent = std::is_same_v<S, float>;
-  const S* u = u_.data();
-  const S* e = (kPresent ? u_ : earlier_u_).data();
-  for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
-    const Pair& pair = pairs_.list[k];
-    S sum = S(0.0), square = S(0.0), at_a[D], at_b[D];
-    for (int i = 0; i < D; ++i) sum += e[i] * (x[pair.a + i] - x[pair.b + i]);
-    if (v != nullptr) {
-      for (int i = 0; i < D; ++i) {
-        const S rate = v[pair.a + i] - v[pair.b + i];
-        square += rate * rate;
-      }
-    }
-    sum *= S(4.0) * f;
-    square *= S(4.0) * f;
-    // All is read before anything is written, which the compiler need not prove then.
-    for (int i = 0; i < D; ++i) {
-      const S force = sum * e[i] + square * u[i];
-      at_a[i] = y[pair.a + i] - force;
-      at_b[i] = y[pair.b + i] + force;
-    }
-    for (int i = 0; i < D; ++i) y[pair.a + i] = at_a[i];
-    if (k >= pairs_.two) continue;
-    for (int i = 0; i < D; ++i) y[pair.b + i] = at_b[i];
-  }
-  const int behind =
-      quads_.empty() ? 0 : 2 * D;  // where there are none, there are no vectors either
-  const S* g = vectors_.data() + behind;
-  const S* earlier = (kPresent ? vectors_ : earlier_vectors_).data() + behind;
-  for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
-    const Quad& quad = quads_[k];
-    S sum = S(0.0);
-    for (int i = 0; i < quad.free; ++i) sum += dot<D>(earlier + i * D, x + quad.points[i].row);
-    sum *= f;
-    const S term = v == nullptr ? S(0.0) : f * quad_velocity_term(k, v);
-    for (int i = 0; i < quad.free; ++i) {
-      S* to = y + quad.points[i].row;
-      for (int j = 0; j < D; ++j) to[j] -= sum * earlier[i * D + j] + term * g[i * D + j];
-    }
-  }
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
-    sum *= f;
-    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] -= sum * term_coefficients_[i];
-  }
-}
-
-// One constraint alone, for those that drivers touch.
-
-template <typename S, int D>
-bool Constraints<S, D>::touches(int k, const std::vector<int>& point_rows) const {
-  const auto is_one = [&](int row) {
-    return std::find(point_rows.begin(), point_rows.end(), row) != point_rows.end();
-  };
-  if (k < pairs_.count()) return is_one(pairs_.list[k].a) || is_one(pairs_.list[k].b);
-  const int i = k - pairs_.count();
-  if (i >= static_cast<int>(quads_.size())) return false;
-  const Quad& quad = quads_[i];
-  return is_one(quad.a) || is_one(quad.b) || is_one(quad.c) || is_one(quad.d);
-}
-
-template <typename S, int D>
-S Constraints<S, D>::product_of(int k, const S* x) const {
-  S sum = S(0.0);
-  if (k < pairs_.count()) {
-    const Pair& pair = pairs_.list[k];
-    for (int i = 0; i < D; ++i) sum += u_[k * D + i] * (x[pair.a + i] - x[pair.b + i]);
-    return S(2.0) * sum;
-  }
-  const int at = k - pairs_.count();
-  if (at < static_cast<int>(quads_.size())) {
-    const Quad& quad = quads_[at];
-    const S* a = vectors_.data() + at * kQuad;
-    for (int i = 0; i < D; ++i) {
-      sum += a[i] * (x[quad.a + i] - x[quad.b + i]) + a[D + i] * (x[quad.c + i] - x[quad.d + i]);
-    }
-    return sum;
-  }
-  const Terms& terms = linear_[at - quads_.size()];
-  for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
-  return sum;
-}
-
-template <typename S, int D>
-void Constraints<S, D>::add_gradient(int k, const S& t, S* y) const {
-  if (k < pairs_.count()) {
-    const Pair& pair = pairs_.list[k];
-    for (int i = 0; i < D; ++i) {
-      const S force = S(2.0) * t * u_[k * D + i];
-      y[pair.a + i] += force;
-      y[pair.b + i] -= force;
-    }
-    return;
-  }
-  const int at = k - pairs_.count();
-  if (at < static_cast<int>(quads_.size())) {
-    const S* g = vectors_.data() + at * kQuad + 2 * D;
-    for (int i = 0; i < quads_[at].free; ++i) {
-      for (int x = 0; x < D; ++x) y[quads_[at].points[i].row + x] += t * g[i * D + x];
-    }
-    return;
-  }
-  const Terms& terms = linear_[at - quads_.size()];
-  for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += t * term_coefficients_[i];
 }
 
 }  // namespace mbs::compiled_ldl

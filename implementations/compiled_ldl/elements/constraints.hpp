@@ -23,38 +23,33 @@ class Constraints {
   [[nodiscard]] int row(int k) const { return multiplier_row_[k]; }
   S& value(int k) { return value_[k]; }
 
-  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before become
-  /// `earlier` ones, which stay if `exchange` is false.
-  void evaluate(const S* q, S* phi, bool exchange = true) {
-    evaluate_with(q, phi, exchange, [](int /*k*/, const S& /*phi*/) {});
+  /// phi = Φ(q), and the gradients for what follows.
+  void evaluate(const S* q, S* phi) {
+    evaluate_with(q, phi, [](int /*k*/, const S& /*phi*/) {});
   }
   /// The same, then λ += α Φ.
   void evaluate_and_update(const S* q, S* phi, const S& alpha, S* lambda) {
-    evaluate_with(q, phi, true, [&](int k, const S& value) { lambda[k] += alpha * value; });
+    evaluate_with(q, phi, [&](int k, const S& value) { lambda[k] += alpha * value; });
+  }
+  /// phi = Φ(q), and the gradients in these lanes; in the others they stay.
+  void evaluate_where(const LaneMask& mask, const S* q, S* phi) {
+    u_.swap(other_u_);
+    vectors_.swap(other_vectors_);
+    evaluate(q, phi);
+    copy_where(~mask, other_u_, u_);
+    copy_where(~mask, other_vectors_, vectors_);
   }
   /// then(k, Φ_k(q)); gradients stay what they are.
   template <typename Then>
   void values(const S* q, Then then) const;
-  /// Gradients become `earlier` ones in these lanes.
-  void keep_where(const LaneMask& mask) {
-    copy_where(mask, u_, earlier_u_);
-    copy_where(mask, vectors_, earlier_vectors_);
-  }
-  /// y += Φqᵀ t.
-  void add_transposed(const S* t, S* y) const;
+  /// y += factor Φqᵀ t.
+  void add_transposed(const S* t, const S& factor, S* y) const;
   /// y −= h Φqᵀ (λ + α φ).
   void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
-  /// y −= f (Φqᵀ Φq x + Φqᵀ t) with t = Φ̇q v if there is v, the first two Φq the earlier ones (in
-  /// single precision the present ones); x is zero at fixed points.
-  void add_projection(const S* x, const S* v, const S& f, S* y) const;
-  /// Whether one of these rows is among those of constraint k's points.
-  [[nodiscard]] bool touches(int k, const std::vector<int>& point_rows) const;
-  /// Φq x of constraint k alone, with the columns of fixed points.
-  S product_of(int k, const S* x) const;
-  /// y += t times the gradient of constraint k.
-  void add_gradient(int k, const S& t, S* y) const;
-  /// t = Φq x, with the columns of fixed points.
-  void product(const S* x, S* t, bool earlier = false) const;
+  /// t = Φq x, with the columns of fixed points; + 2 u̇·B ẇ if there is v, − given if there is that.
+  void product(const S* x, S* t, const S* v = nullptr, const S* given = nullptr) const;
+  /// y += f Φqᵀ t with that t, in one sweep.
+  void add_projection(const S* x, const S* v, const S* given, const S& f, S* y) const;
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
   void velocity_terms(const S* v, S* t) const;
 
@@ -70,7 +65,7 @@ class Constraints {
   template <typename F>
   void add_constant(F* matrix, const S& s) const;
   template <typename F>
-  void add_penalty(F* matrix, const S& s, bool earlier = false) const;
+  void add_penalty(F* matrix, const S& s) const;
   template <typename F>
   void add_rows(F* matrix) const;
 
@@ -95,9 +90,11 @@ class Constraints {
   void find_rows(const Program& program);
   void multiply(const S* matrix, const S* x, S* y, bool transposed) const;
   template <typename Then>
-  void evaluate_with(const S* q, S* phi, bool exchange, Then then);
+  void evaluate_with(const S* q, S* phi, Then then);
   template <typename Factor>
   void add_gradients(Factor factor, S* y) const;
+  S half_pair_rate(int k, const S* x, const S* v) const;
+  S quad_rate(int i, const S* x, const S* v) const;
   S quad_velocity_term(int i, const S* v) const;
 
   Pairs pairs_;
@@ -110,9 +107,10 @@ class Constraints {
   Array<S> matrices_;  // B, D × D row by row
   std::vector<int> number_, multiplier_row_;
   Array<S> value_;
-  Array<S> u_, earlier_u_;              // of each distance
-  Array<S> vectors_, earlier_vectors_;  // A = B w, C = Bᵀ u, gradients of each other quadratic one
-  Array<S> force_;                      // g h of Eq. (16)
+  Array<S> u_;                        // of each distance
+  Array<S> vectors_;                  // A = B w, C = Bᵀ u, gradients of each other quadratic one
+  Array<S> other_u_, other_vectors_;  // batches: where the next ones go
+  Array<S> force_;                    // g h of Eq. (16)
   std::vector<RowPlace> pair_rows_;
   std::vector<Place> quad_rows_;  // four of each
   std::vector<int> term_places_;  // saddle-point forms: of each term
@@ -167,7 +165,7 @@ void Constraints<S, D>::add_pairs(std::span<const Model* const> models, const Ro
         of_models<S>(models, [&](const Model& m) { return m.dot_constraints()[number].value; }));
   }
   u_.resize(points.size() * D, S(0.0));
-  earlier_u_ = u_;
+  if (kLanesOf < S >> 1) other_u_ = u_;
 }
 
 template <typename S, int D>
@@ -201,7 +199,7 @@ void Constraints<S, D>::add_quads(std::span<const Model* const> models, const Ro
     }
   }
   vectors_.resize(quads_.size() * kQuad, S(0.0));
-  earlier_vectors_ = vectors_;
+  if (kLanesOf < S >> 1) other_vectors_ = vectors_;
 }
 
 template <typename S, int D>
@@ -224,8 +222,8 @@ void Constraints<S, D>::add_linear(std::span<const Model* const> models, const R
   }
 }
 
-/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points, or its
-/// column in the rows of those that it comes before (Pattern::solved).
+/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points, or
+/// its column in the rows of those that it comes before (Pattern::solved).
 template <typename S, int D>
 void Constraints<S, D>::find_rows(const Program& program) {
   int k = 0;

@@ -5,32 +5,23 @@
 
 namespace mbs::compiled_ldl {
 
-/// A driven point A on rows 16-17 and a rod A - B, constraint 0, of driven length: point_rows_ =
-/// {16}, touched_ = {0}, values_ = {{0, 0, ṡ, s̈}}.
+/// A driven point A on rows 16-17 and a rod A - B, constraint 0, of driven length, the first driven
+/// value: point_rows_ = {16}, values_ = {{0, 0}}, rates_ = {ṡ}.
 template <typename S, int D>
 class Drivers {
  public:
   Drivers(std::span<const Model* const> models, const Rows& rows, const Constraints<S, D>& all);
 
   [[nodiscard]] bool any() const { return any_; }
-  /// Positions and velocities of driven points, values of constraints, force = Q's constant part.
-  void drive(double t, S* q, S* v, Constraints<S, D>& constraints, S* force);
-  /// t = Φt.
-  void rate_terms(const Constraints<S, D>& constraints, S* t) const;
-  /// t = Φ̇q v + Φ̇t.
-  void acceleration_terms(const Constraints<S, D>& constraints, const S* v, S* t) const;
-  /// y −= f Φqᵀ Φt, or that of what drivers add to Φ̇q v + Φ̇t.
-  void add_rate_terms(const Constraints<S, D>& constraints, const S& f, S* y) const;
-  void add_acceleration_terms(const Constraints<S, D>& constraints, const S& f, S* y) const;
-  /// t −= ṡ: makes Φq v + Φt of the product with all columns.
-  void subtract_rates(S* t) const {
-    for (const Value& value : values_) t[value.constraint] -= value.rate;
-  }
+  /// What driven points have of q, v and a, values of constraints, force = Q's constant part.
+  void drive(double t, S* q, S* v, S* a, Constraints<S, D>& constraints, S* force);
+  /// ṡ and s̈ of all constraints; nullptr: none is driven.
+  const S* rates() const { return values_.empty() ? nullptr : rates_.data(); }
+  const S* accelerations() const { return values_.empty() ? nullptr : accelerations_.data(); }
 
  private:
   struct Value {
     int driven, constraint;
-    S rate, acceleration;
   };
   struct Mass {
     int row, point_row;
@@ -40,10 +31,9 @@ class Drivers {
   std::vector<const Model*> models_;
   bool any_;
   std::vector<int> point_rows_;
-  std::vector<int> touched_;  // constraints with a driven point
   std::vector<Value> values_;
   std::vector<Mass> mass_;
-  Array<S> velocity_, acceleration_;  // of fixed points; zero elsewhere
+  Array<S> rates_, accelerations_;  // of constraints
   Array<S> constant_;
 };
 
@@ -59,18 +49,15 @@ Drivers<S, D>::Drivers(std::span<const Model* const> models, const Rows& rows,
   }
   any_ = !first.driven_points().empty() || !first.driven_values().empty();
   if (!any_) return;
-  velocity_.resize(rows.extent, S(0.0));
-  acceleration_.resize(rows.extent, S(0.0));
+  rates_.resize(all.count(), S(0.0));
+  accelerations_.resize(all.count(), S(0.0));
   for (const DrivenPoint& point : first.driven_points()) {
     point_rows_.push_back(rows.of_point[point.point]);
-  }
-  for (int k = 0; k < all.count(); ++k) {
-    if (all.touches(k, point_rows_)) touched_.push_back(k);
   }
   for (int i = 0; i < static_cast<int>(first.driven_values().size()); ++i) {
     for (int k = 0; k < all.count(); ++k) {
       if (all.number(k) != first.driven_values()[i].constraint) continue;
-      values_.push_back({i, k, S(0.0), S(0.0)});
+      values_.push_back({i, k});
     }
   }
   for (int i = 0; i < static_cast<int>(first.driven_mass().size()); ++i) {
@@ -82,7 +69,7 @@ Drivers<S, D>::Drivers(std::span<const Model* const> models, const Rows& rows,
 }
 
 template <typename S, int D>
-void Drivers<S, D>::drive(double t, S* q, S* v, Constraints<S, D>& constraints, S* force) {
+void Drivers<S, D>::drive(double t, S* q, S* v, S* a, Constraints<S, D>& constraints, S* force) {
   std::copy(constant_.begin(), constant_.end(), force);
   if (!any_) return;
   const int lanes = static_cast<int>(models_.size());
@@ -100,54 +87,17 @@ void Drivers<S, D>::drive(double t, S* q, S* v, Constraints<S, D>& constraints, 
       const auto get = [&](const Model& m) -> const TimeFunction& {
         return m.driven_points()[i].position[x];
       };
-      sample(get, q[row], velocity_[row], acceleration_[row]);
-      v[row] = velocity_[row];
+      sample(get, q[row], v[row], a[row]);
     }
   }
-  for (Value& value : values_) {
+  for (const Value& value : values_) {
     const auto get = [&](const Model& m) -> const TimeFunction& {
       return m.driven_values()[value.driven].value;
     };
-    sample(get, constraints.value(value.constraint), value.rate, value.acceleration);
+    const int k = value.constraint;
+    sample(get, constraints.value(k), rates_[k], accelerations_[k]);
   }
-  for (const Mass& mass : mass_) force[mass.row] -= mass.value * acceleration_[mass.point_row];
-}
-
-template <typename S, int D>
-void Drivers<S, D>::rate_terms(const Constraints<S, D>& constraints, S* t) const {
-  std::fill_n(t, constraints.count(), S(0.0));
-  for (const int k : touched_) t[k] = constraints.product_of(k, velocity_.data());
-  subtract_rates(t);
-}
-
-template <typename S, int D>
-void Drivers<S, D>::acceleration_terms(const Constraints<S, D>& constraints, const S* v,
-                                       S* t) const {
-  constraints.velocity_terms(v, t);
-  if (!any_) return;
-  for (const int k : touched_) t[k] += constraints.product_of(k, acceleration_.data());
-  for (const Value& value : values_) t[value.constraint] -= value.acceleration;
-}
-
-template <typename S, int D>
-void Drivers<S, D>::add_rate_terms(const Constraints<S, D>& constraints, const S& f, S* y) const {
-  for (const int k : touched_) {
-    constraints.add_gradient(k, -f * constraints.product_of(k, velocity_.data()), y);
-  }
-  for (const Value& value : values_) {
-    constraints.add_gradient(value.constraint, f * value.rate, y);
-  }
-}
-
-template <typename S, int D>
-void Drivers<S, D>::add_acceleration_terms(const Constraints<S, D>& constraints, const S& f,
-                                           S* y) const {
-  for (const int k : touched_) {
-    constraints.add_gradient(k, -f * constraints.product_of(k, acceleration_.data()), y);
-  }
-  for (const Value& value : values_) {
-    constraints.add_gradient(value.constraint, f * value.acceleration, y);
-  }
+  for (const Mass& mass : mass_) force[mass.row] -= mass.value * a[mass.point_row];
 }
 
 // These are compiled once, beside the steps.

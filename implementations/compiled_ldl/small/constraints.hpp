@@ -7,11 +7,6 @@
 
 namespace mbs::compiled_ldl {
 
-/// What drivers prescribe: of fixed points, and of values by the constraint's number.
-struct Prescribed {
-  Array<double> points, values;
-};
-
 template <int N, int D>
 class SmallConstraints {
  public:
@@ -20,13 +15,13 @@ class SmallConstraints {
 
   SmallConstraints(const Model& model, double alpha, double h);
 
-  /// Φ and Φq at q, then λ += change Φ. With a matrix, it and y get what Eqs. (5) and (3) have of
-  /// constraints, and Φq is kept for the projections.
+  /// Φ at q, then λ += change Φ. If it assembles, the matrix and y get what Eqs. (5) and (3) have
+  /// of constraints, and Φq is kept for the projections.
   template <bool kAssembles>
   [[gnu::always_inline]] void evaluate(const double* q, double change, Matrix& matrix, Row& y);
-  /// y −= (Δt²/4) α (Φqᵀ Φq x + Φqᵀ t), t = Φt or, if there is v, Φ̇q v + Φ̇t; the first two Φq are
-  /// those of the matrix, and x is zero at fixed points.
-  void project(const double* x, const double* v, const Prescribed* prescribed, Row& y) const;
+  /// y −= (Δt²/4) α Φqᵀ (Φq x + t), with Φq of the matrix, all columns of it for x; t = −ṡ or, if
+  /// there is v, 2 u̇·B ẇ − s̈. `given`: ṡ or s̈, nullptr if zero.
+  void project(const double* x, const double* v, const double* given, Row& y) const;
   /// What linear rows add to the matrix.
   void add_constant(Matrix& matrix) const {
     for (const Linear& linear : linear_) matrix.add_square(alpha_ * h_, linear.row);
@@ -42,23 +37,25 @@ class SmallConstraints {
   struct Distance {
     Difference<N, D> u;
     int number;
-    Gradient of_matrix, last;
+    Gradient gradient;
   };
   struct Product {
     Difference<N, D> u, w;
     double B[D][D];
     int number;
-    Gradient of_matrix, last;
+    Gradient gradient;
   };
   struct Linear {
     alignas(64) double row[Row::kSize];
     int number, begin, end;
   };
   void add_product(const Model& model, const BilinearConstraint& c, int number);
-  /// Given Φ and its gradient.
-  template <bool kAssembles>
-  [[gnu::always_inline]] void finish(int number, double phi, double change, const Row& gradient,
-                                     Row& y);
+  /// λ += change Φ; its force.
+  [[gnu::always_inline]] double update(int number, double phi, double change) {
+    const double force = lambda[number] + change * phi;
+    lambda[number] = force;
+    return -h_ * (force + alpha_ * phi);
+  }
 
   double alpha_, h_;
   std::vector<Distance> distances_;
@@ -122,38 +119,30 @@ SmallConstraints<N, D>::SmallConstraints(const Model& model, double alpha, doubl
 
 template <int N, int D>
 template <bool kAssembles>
-inline void SmallConstraints<N, D>::finish(int number, double phi, double change,
-                                           const Row& gradient, Row& y) {
-  const double force = lambda[number] + change * phi;
-  lambda[number] = force;
-  if constexpr (kAssembles) y.add(-h_ * (force + alpha_ * phi), gradient);
-}
-
-template <int N, int D>
-template <bool kAssembles>
 inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Matrix& matrix,
                                              Row& y) {
   const double weight = alpha_ * h_;
   for (Distance& c : distances_) {
-    Gradient& g = kAssembles ? c.of_matrix : c.last;
     double u[D];
     c.u.of(q, u);
+    const double force = update(c.number, dot<D>(u, u) - values[c.number], change);
+    if constexpr (!kAssembles) continue;
+    Gradient& g = c.gradient;
     double at_u[D];
     for (int x = 0; x < D; ++x) g.at_u[x] = at_u[x] = 2.0 * u[x];
     Row row = Row::zero();
     c.u.add_transposed(at_u, row);
     row.put(g.row);
-    finish<kAssembles>(c.number, dot<D>(u, u) - values[c.number], change, row, y);
-    if constexpr (kAssembles && kInRegisters<N>) {
+    y.add(force, row);
+    if constexpr (kInRegisters<N>) {
       matrix.add_square(weight, g.row);
-    } else if constexpr (kAssembles) {
+    } else {
       Row scaled = Row::zero();
       scaled.add(weight, row);
       c.u.add_columns(scaled, at_u, matrix);
     }
   }
   for (Product& c : products_) {
-    Gradient& g = kAssembles ? c.of_matrix : c.last;
     double u[D], w[D];
     c.u.of(q, u);
     c.w.of(q, w);
@@ -162,17 +151,20 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
       at_u[x] = at_w[x] = 0.0;
       for (int y = 0; y < D; ++y) at_u[x] += c.B[x][y] * w[y];
       for (int y = 0; y < D; ++y) at_w[x] += c.B[y][x] * u[y];
-      g.at_u[x] = at_u[x];
-      g.at_w[x] = at_w[x];
     }
+    const double force = update(c.number, dot<D>(u, at_u) - values[c.number], change);
+    if constexpr (!kAssembles) continue;
+    Gradient& g = c.gradient;
+    std::copy_n(at_u, D, g.at_u);
+    std::copy_n(at_w, D, g.at_w);
     Row row = Row::zero();
     c.u.add_transposed(at_u, row);
     c.w.add_transposed(at_w, row);
     row.put(g.row);
-    finish<kAssembles>(c.number, dot<D>(u, at_u) - values[c.number], change, row, y);
-    if constexpr (kAssembles && kInRegisters<N>) {
+    y.add(force, row);
+    if constexpr (kInRegisters<N>) {
       matrix.add_square(weight, g.row);
-    } else if constexpr (kAssembles) {
+    } else {
       Row scaled = Row::zero();
       scaled.add(weight, row);
       c.u.add_columns(scaled, at_u, matrix);
@@ -182,53 +174,39 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
   for (const Linear& c : linear_) {
     double sum = 0.0;
     for (int i = c.begin; i < c.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
-    finish<kAssembles>(c.number, sum - values[c.number], change, Row::of(c.row), y);
+    const double force = update(c.number, sum - values[c.number], change);
+    if constexpr (kAssembles) y.add(force, Row::of(c.row));
   }
 }
 
 template <int N, int D>
-inline void SmallConstraints<N, D>::project(const double* x, const double* v,
-                                            const Prescribed* prescribed, Row& y) const {
+inline void SmallConstraints<N, D>::project(const double* x, const double* v, const double* given,
+                                            Row& y) const {
   const double factor = -alpha_ * h_;
   double u[D], w[D];
-  const auto given = [&](int number) {
-    return prescribed == nullptr ? 0.0 : -prescribed->values[number];
-  };
+  const auto subtracted = [&](int number) { return given == nullptr ? 0.0 : given[number]; };
   for (const Distance& c : distances_) {
     c.u.of(x, u);
-    y.add(factor * dot<D>(c.of_matrix.at_u, u), c.of_matrix.row);
-    if (v == nullptr && prescribed == nullptr) continue;
-    double term = given(c.number);
+    double rate = dot<D>(c.gradient.at_u, u) - subtracted(c.number);
     if (v != nullptr) {
       c.u.of(v, u);
-      term += 2.0 * dot<D>(u, u);
+      rate += 2.0 * dot<D>(u, u);
     }
-    if (prescribed != nullptr) {
-      c.u.of(prescribed->points.data(), u);
-      term += dot<D>(c.last.at_u, u);
-    }
-    y.add(factor * term, c.last.row);
+    y.add(factor * rate, c.gradient.row);
   }
   for (const Product& c : products_) {
     c.u.of(x, u);
     c.w.of(x, w);
-    y.add(factor * (dot<D>(c.of_matrix.at_u, u) + dot<D>(c.of_matrix.at_w, w)), c.of_matrix.row);
-    if (v == nullptr && prescribed == nullptr) continue;
-    double term = given(c.number);
+    double rate = dot<D>(c.gradient.at_u, u) + dot<D>(c.gradient.at_w, w) - subtracted(c.number);
     if (v != nullptr) {
       c.u.of(v, u);
       c.w.of(v, w);
-      for (int i = 0; i < D; ++i) term += 2.0 * u[i] * dot<D>(c.B[i], w);
+      for (int i = 0; i < D; ++i) rate += 2.0 * u[i] * dot<D>(c.B[i], w);
     }
-    if (prescribed != nullptr) {
-      c.u.of(prescribed->points.data(), u);
-      c.w.of(prescribed->points.data(), w);
-      term += dot<D>(c.last.at_u, u) + dot<D>(c.last.at_w, w);
-    }
-    y.add(factor * term, c.last.row);
+    y.add(factor * rate, c.gradient.row);
   }
   for (const Linear& c : linear_) {
-    double sum = given(c.number);
+    double sum = -subtracted(c.number);
     for (int i = c.begin; i < c.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
     y.add(factor * sum, c.row);
   }

@@ -31,7 +31,7 @@ class SmallStepper final : public Simulation {
   void linearize(double change);
   void apply(const Row& change);
   void project();
-  void project(double* x, const double* v, const Prescribed* prescribed);
+  void project(double* x, const double* v, const double* given);
 
   StepSettings settings_;
   int variables_;
@@ -97,8 +97,8 @@ StepOutcome SmallStepper<N, D>::do_step() {
   phases_.enter(Phase::other);
   if (drivers_.any()) {
     gravity_.put(force_.data());
-    drivers_.drive(time(), q_.data(), constraints_.values.data(), force_.data());
-    drivers_.put_velocities(v_.data(), false);
+    drivers_.drive(time(), q_.data(), v_.data(), a_.data(), constraints_.values.data(),
+                   force_.data());
   }
   predict();
   StepOutcome outcome;
@@ -120,9 +120,9 @@ StepOutcome SmallStepper<N, D>::do_step() {
       break;
     }
   }
+  project();
   phases_.enter(Phase::evaluation);
   constraints_.template evaluate<false>(q_.data(), settings_.penalty, matrix_, y_);
-  project();
   return outcome;
 }
 
@@ -179,18 +179,16 @@ void SmallStepper<N, D>::project() {
   unprojected_ = 0;
   phases_.enter(Phase::projection);
   factors_.prepare();
-  drivers_.put_velocities(v_.data(), true);
-  project(v_.data(), nullptr, drivers_.velocity());
+  project(v_.data(), nullptr, drivers_.rates());
   if (settings_.projections == Projections::velocity) return;
-  drivers_.put_velocities(v_.data(), false);
-  project(a_.data(), v_.data(), drivers_.acceleration());
+  project(a_.data(), v_.data(), drivers_.accelerations());
 }
 
-/// Eq. (6) for what it changes, as Stepper::project_penalty().
+/// Eq. (6) for what it changes, as Stepper::project_once().
 template <int N, int D>
-void SmallStepper<N, D>::project(double* x, const double* v, const Prescribed* prescribed) {
+void SmallStepper<N, D>::project(double* x, const double* v, const double* given) {
   Row y = Row::zero();
-  constraints_.project(x, v, prescribed, y);
+  constraints_.project(x, v, given, y);
   Row corrected = Row::of(x);
   corrected.add(1.0, factors_.solve(y));
   corrected.put(x);
