@@ -5,6 +5,13 @@
 
 namespace mbs::compiled_chains {
 
+/// A point that stays where the last pass evaluated it: there it is projected. f is where that pass
+/// has left it, until the next one needs f for itself.
+template <class V, class Rods>
+struct PassBlock : Block<V, Rods> {
+  [[nodiscard]] MBS_CHAIN_INLINE Vec<V>& position() { return this->f; }
+};
+
 /// What decides about a pass.
 template <class V>
 struct PassResult {
@@ -12,15 +19,8 @@ struct PassResult {
   V largest;  // |2 s Δq|
 };
 
-/// Lanes of which only some take part. All bits of a lane are set or none.
-template <class Mask>
-struct Taking {
-  Mask pending;  // whose pass before has not yet given its λ
-  Mask active;   // that this pass is for
-};
-
 /// The first pass of a step predicts (step 1); later ones update λ, Eq. (1), by the Φ they begin
-/// with. With `kMasked` only some lanes do anything.
+/// with. With `kMasked` only the lanes `active` do anything: all bits of a lane are set or none.
 template <class Store, bool kFirst, bool kMasked = false>
 class Newton {
  public:
@@ -29,40 +29,40 @@ class Newton {
 
   static PassResult<V> pass(Store& chain) {
     PassResult<V> result;
-    result.least = inwards(chain, Taking<Mask>());
+    result.least = inwards(chain, Mask());
     result.largest = outwards(chain, Mask());
     return result;
   }
 
   /// The two sweeps of a pass; the least pivot, and max|2 s Δq|.
-  static V inwards(Store& chain, const Taking<Mask>& taking) {
+  static V inwards(Store& chain, const Mask& active) {
     B* block = chain.blocks.data();
     const C* const* data = chain.constants.data();
     B* const end = block + chain.last;
     Carry<V> carry;
     V least = V{} + 1.0;
-    if (kFirst) predict(*block);
+    begin(*block, active);
     if (block != end) {
       Pending before;
-      if (kFirst) predict(block[1]);
-      eliminate_block(*block, block[1], **data, taking, least, carry, before);
+      begin(block[1], active);
+      eliminate_block(*block, block[1], **data, active, least, carry, before);
       for (++block, ++data; block != end; ++block, ++data) {
-        if (kFirst) predict(block[1]);
+        begin(block[1], active);
         Pending now;
-        eliminate_block(*block, block[1], **data, taking, least, carry, now);
-        finish_block(block[-1], *data[-1], before, taking.active, carry);
+        eliminate_block(*block, block[1], **data, active, least, carry, now);
+        finish_block(block[-1], *data[-1], before, active, carry);
         before = now;
         before.f = carry.force + before.f;
       }
-      finish_block(block[-1], *data[-1], before, taking.active, carry);
+      finish_block(block[-1], *data[-1], before, active, carry);
     }
-    finish_chain(*block, **data, taking, least, carry);
+    finish_chain(*block, **data, active, least, carry);
     return least;
   }
   /// Of two groups by turns: between a block's division and its factors comes the other's block.
-  static void inwards(Store& a, const Taking<Mask>& taking_a, V& least_a, Store& b,
-                      const Taking<Mask>& taking_b, V& least_b) {
-    InwardsSweep sweep_a(a, taking_a), sweep_b(b, taking_b);  // elsewhere they would be in memory
+  static void inwards(Store& a, const Mask& active_a, V& least_a, Store& b,
+                      const Mask& active_b, V& least_b) {
+    InwardsSweep sweep_a(a, active_a), sweep_b(b, active_b);  // elsewhere they would be in memory
     for (int k = 0; k < a.last; ++k) {
       sweep_a.eliminate();
       if (k > 0) sweep_b.complete();
@@ -92,14 +92,19 @@ class Newton {
   using B = typename Store::B;
   using C = typename Store::C;
 
-  MBS_CHAIN_INLINE static void predict(B& block) {
-    block.w = block.w + block.u;  // (2) makes the next w of this and the next u
-    block.x = block.x + block.w;
+  /// Takes a point to where the pass evaluates it.
+  MBS_CHAIN_INLINE static void begin(B& block, const Mask& active) {
+    if (kFirst) {
+      block.w = block.w + block.u;  // (2) makes the next w of this and the next u
+      block.x = block.f + block.w;
+    } else {
+      set<kMasked>(block.x, block.f, active);
+    }
   }
 
   /// The tension λ + p of a distance, (3), and λ of the pass before, Eq. (1).
-  MBS_CHAIN_INLINE static V tension(V& multiplier, const V& violation, const Mask& pending) {
-    if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), pending);
+  MBS_CHAIN_INLINE static V tension(V& multiplier, const V& violation, const Mask& active) {
+    if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), active);
     return multiplier + violation;
   }
 
@@ -110,18 +115,18 @@ class Newton {
 
     MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) const {
       largest.add(x);
-      set<kMasked>(block.x, block.x - (V{} + 0.5) * x, active);
+      set<kMasked>(block.f, block.x - (V{} + 0.5) * x, active);
       set<kMasked>(block.u, block.u - x, active);
     }
   };
 
   /// M + Σ d dᵀ of a point, and its right-hand side but for links.
-  MBS_CHAIN_INLINE static Sym<V> point(B& block, const C& data, Vec<V>& f, const Mask& pending) {
+  MBS_CHAIN_INLINE static Sym<V> point(B& block, const C& data, Vec<V>& f, const Mask& active) {
     f = f + data.mass.times(block.u);
     Sym<V> A;
     for (int j = 0; j < Store::kRods; ++j) {
       const Vec<V> d = data.rods[j].vector(block.x);
-      f = f + tension(block.rods[j], data.rods[j].violation(d), pending) * d;
+      f = f + tension(block.rods[j], data.rods[j].violation(d), active) * d;
       A = j == 0 ? data.mass.plus_square(d) : plus_square(A, d);
     }
     return A;
@@ -138,13 +143,13 @@ class Newton {
   };
 
   MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
-                                               const Taking<Mask>& taking, V& least,
+                                               const Mask& active, V& least,
                                                Carry<V>& carry, Pending& pending) {
     Vec<V> f = data.mass.outer(read(next.u)) - data.force;
-    const Sym<V> own = point(block, data, f, taking.pending);
+    const Sym<V> own = point(block, data, f, active);
     pending.e = data.link.vector(next.x - block.x);
     const V violation = data.link.violation(pending.e);
-    const Vec<V> pull = product(tension(block.link, violation, taking.pending), pending.e);
+    const Vec<V> pull = product(tension(block.link, violation, active), pending.e);
     pending.f = f - pull;
     pending.inner = pull + data.mass.inner(block.u);
     eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
@@ -155,7 +160,7 @@ class Newton {
                                             const Mask& active, Carry<V>& carry) {
     Factors<V> factors;
     finish(factors, data.mass, pending.S, pending.z, pending.reciprocal, pending.e);
-    block.f = pending.f;
+    set<kMasked>(block.f, pending.f, active);
     carry.force = forward(factors.gain, pending.inner, pending.f);
     set<kMasked>(block.factors.scaled, factors.scaled, active);
     for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
@@ -163,38 +168,39 @@ class Newton {
 
   /// A sweep inwards that stops twice a block: when it is eliminated, and when it has its factors.
   struct InwardsSweep {
-    InwardsSweep(Store& chain, const Taking<Mask>& taking)
-        : block(chain.blocks.data()), data(chain.constants.data()), taking(taking) {
-      if (kFirst) predict(*block);
+    InwardsSweep(Store& chain, const Mask& active)
+        : block(chain.blocks.data()), data(chain.constants.data()), active(active) {
+      begin(*block, active);
     }
 
     MBS_CHAIN_INLINE void eliminate() {
-      if (kFirst) predict(block[1]);
-      eliminate_block(*block, block[1], **data, taking, least, carry, pending);
+      begin(block[1], active);
+      eliminate_block(*block, block[1], **data, active, least, carry, pending);
     }
     MBS_CHAIN_INLINE void complete() {
       pending.f = carry.force + pending.f;
-      finish_block(*block, **data, pending, taking.active, carry);
+      finish_block(*block, **data, pending, active, carry);
       ++block;
       ++data;
     }
-    MBS_CHAIN_INLINE void finish() { finish_chain(*block, **data, taking, least, carry); }
+    MBS_CHAIN_INLINE void finish() { finish_chain(*block, **data, active, least, carry); }
 
     B* block;
     const C* const* data;
-    Taking<Mask> taking;
+    Mask active;
     Carry<V> carry;
     V least = V{} + 1.0;
     Pending pending;
   };
 
   /// Eliminates the last block.
-  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Taking<Mask>& taking,
+  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Mask& active,
                                             V& least, const Carry<V>& carry) {
     Vec<V> f = Vec<V>{} - data.force;
-    const Sym<V> own = point(block, data, f, taking.pending);
-    set<kMasked>(block.factors.scaled, meet<typename Store::Use>(own, carry, f, least, block.f),
-                 taking.active);
+    const Sym<V> own = point(block, data, f, active);
+    Vec<V> x;
+    set<kMasked>(block.factors.scaled, meet<typename Store::Use>(own, carry, f, least, x), active);
+    set<kMasked>(block.f, x, active);
   }
 };
 

@@ -10,9 +10,9 @@
 namespace mbs::compiled_chains {
 
 template <template <class> class MassOf, class Rods>
-class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
+class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods, PassBlock>> {
  public:
-  using Store = Storage<Wide, MassOf, Rods>;
+  using Store = Storage<Wide, MassOf, Rods, PassBlock>;
   using LaneGroup<Store>::LaneGroup;
 
   void get_state(int chain, const Topology& topology, const StepSettings& settings,
@@ -36,7 +36,7 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
     const bool by_turns = groups.size() == 2 && groups[0]->projections_ == Projections::both &&
                           groups[1]->projections_ == Projections::both;
     if (by_turns) {
-      project_both(*groups[0], *groups[1]);
+      Projection<Store>::both(groups[0]->chain_, groups[1]->chain_);
     } else {
       for (const auto& group : groups) group->project();
     }
@@ -60,7 +60,6 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
   bool decide() {
     if (!more_) return false;
     passes_ += active_;
-    last_ = active_;
     failed_ |= active_ & ~where(result_.least > V{});
     active_ &= ~where(result_.largest <= this->tolerance_) & ~failed_;
     more_ = any(active_);
@@ -100,8 +99,7 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
   }
   template <class Passes>
   static void both_inwards(PenaltyGroup& a, PenaltyGroup& b) {
-    Passes::inwards(a.chain_, {a.last_, a.active_}, a.result_.least, b.chain_, {b.last_, b.active_},
-                    b.result_.least);
+    Passes::inwards(a.chain_, a.active_, a.result_.least, b.chain_, b.active_, b.result_.least);
   }
   template <class Passes>
   static void both_outwards(PenaltyGroup& a, PenaltyGroup& b) {
@@ -112,8 +110,8 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
   void inwards() {
     if (!more_) return;
     result_.least = kFirst || whole_
-                        ? Newton<Store, kFirst>::inwards(chain_, Taking<Mask>())
-                        : Newton<Store, false, true>::inwards(chain_, {last_, active_});
+                        ? Newton<Store, kFirst>::inwards(chain_, Mask())
+                        : Newton<Store, false, true>::inwards(chain_, active_);
   }
   template <bool kFirst>
   void outwards() {
@@ -128,28 +126,14 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
   }
   void project() {
     using Project = Projection<Store>;
-    using MaskedProject = Projection<Store, true>;
-    if (projections_ == Projections::none) return MaskedProject::settle(chain_, last_);
-    if (whole_) {
-      Project::velocity_inwards(chain_, Mask());
-    } else {
-      MaskedProject::velocity_inwards(chain_, last_);
-    }
-    Project::velocity_outwards(chain_);
+    if (projections_ == Projections::none) return Project::none(chain_);
+    Project::velocity(chain_);
     if (projections_ == Projections::both) Project::acceleration(chain_);
-  }
-  static void project_both(PenaltyGroup& a, PenaltyGroup& b) {
-    if (a.whole_ && b.whole_) {
-      Projection<Store>::both(a.chain_, Mask(), b.chain_, Mask());
-    } else {
-      Projection<Store, true>::both(a.chain_, a.last_, b.chain_, b.last_);
-    }
   }
 
   Projections projections_ = Projections::both;  // that this step ends with
   PassResult<V> result_{};
   Mask active_{};      // which chains take part in the next pass
-  Mask last_{};        // which took part in the last one
   bool whole_ = true;  // all took part in all passes
   bool more_ = true;   // another pass is to be done
   int pass_ = 1;

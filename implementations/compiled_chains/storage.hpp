@@ -31,6 +31,8 @@ struct Block {
   V link;
   Vec<V> f;  // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
+
+  [[nodiscard]] Vec<V>& position() { return x; }
 };
 
 /// The vector difference of local coordinates + offset, whose square is to be `square`. It is zero
@@ -224,8 +226,8 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_state(int block, int lane, const S
     -> void {
   B& to = blocks[block];
   const int i = from.here->coordinate;
-  to.x.x[lane] = units.length * (state.q[i] - from.here->origin[0]);
-  to.x.y[lane] = units.length * (state.q[i + 1] - from.here->origin[1]);
+  to.position().x[lane] = units.length * (state.q[i] - from.here->origin[0]);
+  to.position().y[lane] = units.length * (state.q[i + 1] - from.here->origin[1]);
   to.w.x[lane] = units.velocity * state.v[i];
   to.w.y[lane] = units.velocity * state.v[i + 1];
   to.u.x[lane] = units.acceleration * state.a[i];
@@ -284,7 +286,8 @@ auto Storage<Use, MassOf, Rods, BlockOf>::get(int chain, const Topology& topolog
   const double acceleration = 1.0 / units.acceleration, factor = 1.0 / units.multiplier;
   for (int k = 0; k <= last; ++k) {
     const B& from = blocks[k];  // scaled in all lanes at once, which takes as long as in one
-    const V q[2] = {length * from.x.x, length * from.x.y};
+    const Vec<V>& x = const_cast<B&>(from).position();
+    const V q[2] = {length * x.x, length * x.y};
     const V v[2] = {velocity * from.w.x, velocity * from.w.y};
     const V a[2] = {acceleration * from.u.x, acceleration * from.u.y};
     V rods[kRods];

@@ -14,7 +14,7 @@ namespace mbs::compiled_chains {
 /// Blocks, passes and projections of a form.
 struct PenaltyForm {
   template <class V, class Rods>
-  using Block = compiled_chains::Block<V, Rods>;
+  using Block = PassBlock<V, Rods>;
   template <class Store, bool kFirst>
   using Passes = Newton<Store, kFirst>;
   template <class Store>
@@ -80,7 +80,7 @@ class TrapezoidalSimulation final : public Simulation {
   void project() {
     const bool due = --until_projection_ == 0;
     if (due) until_projection_ = settings_.projections_every;
-    if (!due || settings_.projections == Projections::none) return Project::settle(chain_);
+    if (!due || settings_.projections == Projections::none) return Project::none(chain_);
     Project::velocity(chain_);
     if (settings_.projections == Projections::both) Project::acceleration(chain_);
   }
