@@ -17,7 +17,7 @@ void require_storable(const Model& model, Scheme scheme);
 
 /// The model lowered to flat arrays and a dense M, with the workspace of Phi and Phi_q. The linear
 /// system of each scheme derives from it. T0 = M + (Δt/2) C + h K is not stored.
-/// Positions x and velocities v are extended vectors (see Layout), at q' and v'.
+/// Positions x, velocities v and accelerations a are extended vectors (see Layout), at q', v', a'.
 class Assembly {
  public:
   Assembly(const Model& model, const StepSettings& settings);
@@ -27,24 +27,20 @@ class Assembly {
   [[nodiscard]] const Layout& layout() const { return layout_; }
 
   [[nodiscard]] bool is_driven() const { return !drivers_.empty(); }
-  /// Takes the values of all drivers at time t (s), those of driven points into x and v.
-  void drive(double t, arma::vec& x, arma::vec& v);
+  /// Takes the values of all drivers at time t (s), those of driven points into x, v and a.
+  void drive(double t, arma::vec& x, arma::vec& v, arma::vec& a);
 
   /// Evaluates Phi and Phi_q at x; what follows uses them.
-  void evaluate(const arma::vec& x) {
-    constraints_.evaluate(x);
-    if (is_driven()) evaluated_ = x;
-  }
+  void evaluate(const arma::vec& x) { constraints_.evaluate(x); }
 
  protected:
-  /// rhs (n) = -f of Eq. (3) with a (n) = a' and mu (m) in place of lambda + alpha Phi. Evaluates
+  /// rhs (n) = -f of Eq. (3) with mu (m) in place of lambda + alpha Phi. Evaluates
   /// the forces, and with them C and K, which what follows uses.
   void negative_residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                          const arma::vec& mu, arma::vec& rhs);
-  /// out (m) = Phi_q v + Phi_t at the last evaluate().
-  void first_derivative(const arma::vec& v, arma::vec& out) const;
-  /// out (m) = its derivative, with a (n).
-  void second_derivative(const arma::vec& v, const arma::vec& a, arma::vec& out) const;
+  /// out (m) = the first and the second derivative of Phi, with Phi_q of the last evaluate().
+  void rates(const arma::vec& v, arma::vec& out) const;
+  void accelerations(const arma::vec& v, const arma::vec& a, arma::vec& out) const;
 
   Layout layout_;
   arma::blas_int n_, m_;
@@ -55,9 +51,6 @@ class Assembly {
 
   arma::mat M_;         ///< n x n, lower triangle
   arma::vec scaled_Q_;  ///< n, h Q without forces_
-
- private:
-  arma::vec evaluated_;  ///< x of the last evaluate(), if driven
 };
 
 }  // namespace mbs::armadillo_dense

@@ -22,20 +22,22 @@ inline void add_symmetric_product(double factor, const arma::mat& M, const doubl
   arma_fortran(dsymv)("L", &n, &factor, M.memptr(), &ld, x, &kStride, &kOne, y, &kStride, 1);
 }
 
-/// y += factor A x, A: rows x columns. Costs nothing without columns.
-inline void add_product(double factor, const double* A, arma::blas_int rows, arma::blas_int columns,
-                        const double* x, double* y) {
+/// y += factor A x, A: rows x columns, each `height` apart. Costs nothing without columns.
+inline void add_product(double factor, const double* A, arma::blas_int height, arma::blas_int rows,
+                        arma::blas_int columns, const double* x, double* y) {
   if (columns == 0) return;
-  const arma::blas_int ld = std::max(rows, 1);
+  const arma::blas_int ld = std::max(height, 1);
   arma::blas::gemv("N", &rows, &columns, &factor, A, &ld, x, &kStride, &kOne, y, &kStride);
 }
 
-/// Lower triangle of C += factor A Aᵀ, A: rows x columns. Costs nothing without columns.
-inline void add_outer_product(double factor, const double* A, arma::blas_int rows,
+/// Lower triangle of C += factor A Aᵀ, A likewise. Costs nothing without columns.
+inline void add_outer_product(double factor, const double* A, arma::blas_int height,
                               arma::blas_int columns, arma::mat& C) {
   if (columns == 0) return;
-  const arma::blas_int ld = std::max(rows, 1);
-  arma::blas::syrk("L", "N", &rows, &columns, &factor, A, &ld, &kOne, C.memptr(), &ld);
+  const auto rows = static_cast<arma::blas_int>(C.n_rows);
+  const arma::blas_int ldA = std::max(height, 1);
+  const arma::blas_int ldC = std::max(rows, 1);
+  arma::blas::syrk("L", "N", &rows, &columns, &factor, A, &ldA, &kOne, C.memptr(), &ldC);
 }
 
 }  // namespace mbs::armadillo_dense

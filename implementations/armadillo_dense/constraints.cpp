@@ -26,11 +26,12 @@ Direction<dimension> product(const std::array<std::array<double, 3>, 3>& B,
 
 Constraints::Constraints(const Model& model, const Layout& layout)
     : layout_(layout),
+      height_(layout.moving),
       quadratics_(
           static_cast<int>(model.dot_constraints().size() + model.bilinear_constraints().size())),
       values_(model.constraints()),
       phi_(model.constraints(), arma::fill::zeros),
-      jacobian_(uword(layout.n) * phi_.n_elem + uword(layout.dimension), arma::fill::zeros) {
+      jacobian_(height_ * phi_.n_elem + uword(layout.dimension), arma::fill::zeros) {
   lower_dot_constraints(model);
   lower_bilinear_constraints(model);
   lower_linear_constraints(model);
@@ -76,9 +77,9 @@ Constraints::Dot Constraints::lower(const std::array<int, 4>& points, int row) {
 }
 
 uword Constraints::gradient_place(int start, int row) {
-  if (!layout_.is_free(start)) return scrap_place();
+  if (start >= layout_.moving) return scrap_place();
   blocks_.push_back({.row = row, .start = start});
-  return uword(layout_.n) * uword(row) + uword(start);
+  return place(row) + uword(start);
 }
 
 void Constraints::lower_linear_constraints(const Model& model) {
@@ -87,8 +88,7 @@ void Constraints::lower_linear_constraints(const Model& model) {
     const int first = static_cast<int>(terms_.size());
     for (const LinearConstraint::Term& term : c.terms) {
       terms_.push_back(term);
-      jacobian_[uword(layout_.n) * uword(row) + uword(term.coordinate)] =
-          term.coefficient;  // Eq. (8), for good
+      jacobian_[place(row) + uword(term.coordinate)] = term.coefficient;  // Eq. (8), for good
     }
     linears_.push_back({.row = row, .first = first, .last = static_cast<int>(terms_.size())});
     values_[row++] = c.value;
@@ -96,6 +96,16 @@ void Constraints::lower_linear_constraints(const Model& model) {
 }
 
 template <int dimension>
+void Constraints::write_gradients(const Dot& c, const std::array<double, dimension>& u,
+                                  const std::array<double, dimension>& w) {
+  for (const Gradient& gradient : c.gradients) {
+    for (int k = 0; k < dimension; ++k) {
+      jacobian_[gradient.at + k] = gradient.w_cd * w[k] + gradient.w_ab * u[k];
+    }
+  }
+}
+
+template <int dimension, bool with_jacobian>
 void Constraints::evaluate_dots(const double* x) {
   double* const phi = phi_.memptr();
   double* const jacobian = jacobian_.memptr();
@@ -105,45 +115,41 @@ void Constraints::evaluate_dots(const double* x) {
     for (int k = 0; k < dimension; ++k) {
       const double ab = x[c.a + k] - x[c.b + k];
       square += ab * ab;
-      jacobian[c.grad_a + k] = 2.0 * ab;
-      jacobian[c.grad_b + k] = -2.0 * ab;
+      if constexpr (with_jacobian) {
+        jacobian[c.grad_a + k] = 2.0 * ab;
+        jacobian[c.grad_b + k] = -2.0 * ab;
+      }
     }
     phi[c.row] = square - values[c.row];
   }
   for (const Dot& c : others_) {  // Eq. (7)
     const auto u = difference<dimension>(x, c.a, c.b);
     const auto w = difference<dimension>(x, c.c, c.d);
-    for (const Gradient& gradient : c.gradients) {
-      for (int k = 0; k < dimension; ++k) {
-        jacobian[gradient.at + k] = gradient.w_cd * w[k] + gradient.w_ab * u[k];
-      }
-    }
+    if constexpr (with_jacobian) write_gradients<dimension>(c, u, w);
     phi[c.row] = dot<dimension>(u, w) - values[c.row];
   }
 }
 
-template <int dimension>
+template <int dimension, bool with_jacobian>
 void Constraints::evaluate_bilinears(const double* x) {
   for (const Bilinear& c : bilinears_) {  // Eq. (7)
     const auto u = difference<dimension>(x, c.dot.a, c.dot.b);
     const auto Bw = product<dimension, false>(c.B, difference<dimension>(x, c.dot.c, c.dot.d));
-    const auto Bu = product<dimension, true>(c.B, u);
-    for (const Gradient& gradient : c.dot.gradients) {
-      for (int k = 0; k < dimension; ++k) {
-        jacobian_[gradient.at + k] = gradient.w_cd * Bw[k] + gradient.w_ab * Bu[k];
-      }
+    if constexpr (with_jacobian) {
+      write_gradients<dimension>(c.dot, product<dimension, true>(c.B, u), Bw);
     }
     phi_[c.dot.row] = dot<dimension>(u, Bw) - values_[c.dot.row];
   }
 }
 
-void Constraints::evaluate(const arma::vec& x) {
+template <bool with_jacobian>
+void Constraints::evaluate_rows(const arma::vec& x) {
   if (layout_.dimension == 2) {
-    evaluate_dots<2>(x.memptr());
-    evaluate_bilinears<2>(x.memptr());
+    evaluate_dots<2, with_jacobian>(x.memptr());
+    evaluate_bilinears<2, with_jacobian>(x.memptr());
   } else {
-    evaluate_dots<3>(x.memptr());
-    evaluate_bilinears<3>(x.memptr());
+    evaluate_dots<3, with_jacobian>(x.memptr());
+    evaluate_bilinears<3, with_jacobian>(x.memptr());
   }
   for (const Linear& c : linears_) {  // Eq. (8)
     double sum = 0.0;
@@ -152,23 +158,27 @@ void Constraints::evaluate(const arma::vec& x) {
   }
 }
 
+void Constraints::evaluate(const arma::vec& x) { evaluate_rows<true>(x); }
+
+void Constraints::evaluate_phi(const arma::vec& x) { evaluate_rows<false>(x); }
+
 template <int dimension>
-void Constraints::add_product(const double* x, double* out) const {
+void Constraints::multiply(const double* x, double* out) const {
   const double* const jacobian = jacobian_.memptr();
-  const uword n = layout_.n;
   for (const Block& block : blocks_) {
-    const double* const entries = jacobian + n * uword(block.row) + uword(block.start);
+    const double* const entries = jacobian + place(block.row) + uword(block.start);
     double sum = 0.0;
     for (int k = 0; k < dimension; ++k) sum += entries[k] * x[block.start + k];
     out[block.row] += sum;
   }
 }
 
-void Constraints::add_product(const arma::vec& x, arma::vec& out) const {
+void Constraints::multiply(const arma::vec& x, arma::vec& out) const {
+  out.zeros();
   if (layout_.dimension == 2) {
-    add_product<2>(x.memptr(), out.memptr());
+    multiply<2>(x.memptr(), out.memptr());
   } else {
-    add_product<3>(x.memptr(), out.memptr());
+    multiply<3>(x.memptr(), out.memptr());
   }
   for (const Linear& c : linears_) {
     for (int k = c.first; k < c.last; ++k)
@@ -177,26 +187,26 @@ void Constraints::add_product(const arma::vec& x, arma::vec& out) const {
 }
 
 template <int dimension>
-void Constraints::evaluate_accelerations(const double* v, double* out) const {
+void Constraints::add_accelerations(const double* v, double* out) const {
   for (const Distance& c : distances_) {  // Eq. (7)
     const auto u = difference<dimension>(v, c.a, c.b);
-    out[c.row] = 2.0 * dot<dimension>(u, u);
+    out[c.row] += 2.0 * dot<dimension>(u, u);
   }
   for (const Dot& c : others_) {
-    out[c.row] = 2.0 * dot<dimension>(difference<dimension>(v, c.a, c.b),
-                                      difference<dimension>(v, c.c, c.d));
+    out[c.row] += 2.0 * dot<dimension>(difference<dimension>(v, c.a, c.b),
+                                       difference<dimension>(v, c.c, c.d));
   }
   for (const auto& [c, B] : bilinears_) {
     const auto Bw = product<dimension, false>(B, difference<dimension>(v, c.c, c.d));
-    out[c.row] = 2.0 * dot<dimension>(difference<dimension>(v, c.a, c.b), Bw);
+    out[c.row] += 2.0 * dot<dimension>(difference<dimension>(v, c.a, c.b), Bw);
   }
 }
 
-void Constraints::evaluate_accelerations(const arma::vec& v, arma::vec& out) const {
+void Constraints::add_accelerations(const arma::vec& v, arma::vec& out) const {
   if (layout_.dimension == 2) {
-    evaluate_accelerations<2>(v.memptr(), out.memptr());
+    add_accelerations<2>(v.memptr(), out.memptr());
   } else {
-    evaluate_accelerations<3>(v.memptr(), out.memptr());
+    add_accelerations<3>(v.memptr(), out.memptr());
   }
 }
 

@@ -4,11 +4,17 @@
 namespace mbs::armadillo_dense {
 
 Layout::Layout(const Model& model)
-    : n(model.variables()), dimension(model.dimension()), size(model.variables()) {
-  starts.reserve(model.points().size());
-  for (const Point& point : model.points()) {
-    starts.push_back(point.is_fixed() ? size : point.offset);
-    if (point.is_fixed()) size += dimension;
+    : n(model.variables()), dimension(model.dimension()), moving(n), size(n) {
+  for (const Point& point : model.points()) starts.push_back(point.is_fixed() ? -1 : point.offset);
+  for (const DrivenPoint& driven : model.driven_points()) {
+    starts[driven.point] = moving;
+    moving += dimension;
+  }
+  size = moving;
+  for (int& start : starts) {
+    if (start >= 0) continue;
+    start = size;
+    size += dimension;
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace mbs::armadillo_dense {
 
-/// *Extended* vectors hold the n entries of q (or v), then `dimension` numbers for each fixed
-/// point, so that a fixed or driven point is read like a free one.
+/// *Extended* vectors hold the n entries of q (or v, a), then `dimension` numbers for each driven
+/// point, then for each fixed one, so that a fixed or driven point is read like a free one.
 ///
 /// Example, planar: A fixed, B free. Positions are (Bx, By, Ax, Ay), starts of A and B are 2 and 0.
 struct Layout {
@@ -32,6 +32,7 @@ struct Layout {
 
   int n;                    ///< variables
   int dimension;            ///< 2 or 3
+  int moving;               ///< the first entries of extended vectors: of free and driven points
   int size;                 ///< of extended vectors
   std::vector<int> starts;  ///< of each point in extended vectors; below n if it is free
 };

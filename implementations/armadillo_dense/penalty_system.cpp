@@ -36,23 +36,25 @@ void PenaltySystem::residual(const arma::vec& x, const arma::vec& v, const arma:
 void PenaltySystem::assemble() {
   arma::mat& T = solver_.matrix();
   T = constant_.is_empty() ? M_ : constant_;  // Eq. (5)
-  add_outer_product(h_ * alpha_, constraints_.jacobian(), n_, constraints_.quadratics(), T);
+  add_outer_product(h_ * alpha_, constraints_.jacobian(), layout_.moving, constraints_.quadratics(),
+                    T);
   if (forces_.stiffen()) forces_.add_to(T.memptr(), T.n_rows);
 }
 
 void PenaltySystem::velocity_projection(const arma::vec& v) {
-  first_derivative(v, mu_);
-  take_away();
+  rates(v, mu_);  // Eq. (6)
+  penalty_product();
 }
 
 void PenaltySystem::acceleration_projection(const arma::vec& v, const arma::vec& a) {
-  second_derivative(v, a, mu_);
-  take_away();
+  accelerations(v, a, mu_);  // Eq. (6)
+  penalty_product();
 }
 
-void PenaltySystem::take_away() {
+void PenaltySystem::penalty_product() {
   rhs_.zeros();
-  add_product(-h_ * alpha_, constraints_.jacobian(), n_, m_, mu_.memptr(), rhs_.memptr());
+  add_product(-h_ * alpha_, constraints_.jacobian(), layout_.moving, n_, m_, mu_.memptr(),
+              rhs_.memptr());
 }
 
 }  // namespace mbs::armadillo_dense

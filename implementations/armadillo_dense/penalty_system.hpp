@@ -18,7 +18,7 @@ class PenaltySystem : public Assembly {
  public:
   PenaltySystem(const Model& model, const StepSettings& settings);
 
-  /// Right-hand side of Eq. (4), with a (n) = a' and lambda (m).
+  /// Right-hand side of Eq. (4), with lambda (m).
   void residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                 const arma::vec& lambda);
   /// T by Eq. (5), with Phi_q of the last evaluate() and the forces of the last residual().
@@ -28,24 +28,26 @@ class PenaltySystem : public Assembly {
   void solve() { solver_.solve(rhs_); }
   /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return rhs_; }
-  /// lambda (m) after a pass: with the last solution, then with Phi of the last evaluate().
-  void take_solution(arma::vec& /*lambda*/) const {}
-  void take_constraints(arma::vec& lambda) const { lambda += alpha_ * constraints_.phi(); }  // (1)
+  /// What update() needs after the last pass; Phi_q stays.
+  void evaluate_last(const arma::vec& x) { constraints_.evaluate_phi(x); }
+  /// lambda (m) after a pass, with Phi of the last evaluate() or evaluate_last().
+  void update(arma::vec& lambda) const { lambda += alpha_ * constraints_.phi(); }  // Eq. (1)
 
-  /// Right-hand sides of Eq. (6) for v' - v* and a' - a*, with v*, then with v' and a* (n).
+  /// Right-hand sides of Eq. (6) for v' - v* from v*, and for a' - a* from v' and a*. Phi_q of the
+  /// last evaluate() has to be that of the matrix.
   void velocity_projection(const arma::vec& v);
   void acceleration_projection(const arma::vec& v, const arma::vec& a);
 
  private:
   void add_linear_constraints(const Model& model);
-  /// rhs_ = -h α Φqᵀ mu_, Eq. (6).
-  void take_away();
+  /// rhs_ = -h α Φqᵀ mu_.
+  void penalty_product();
 
   double alpha_;  ///< penalty factor
   CholeskySolver solver_;
   arma::mat constant_;  ///< n x n, lower triangle of M + h α Φqᵀ Φq of linear constraints; empty
                         ///< without them
-  arma::vec mu_;   ///< m, lambda + alpha Phi, then derivatives of Phi by time
+  arma::vec mu_;   ///< m, lambda + alpha Phi; then the first, then the second derivative of Phi
   arma::vec rhs_;  ///< n, right-hand side, then solution
 };
 

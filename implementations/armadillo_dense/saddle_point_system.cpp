@@ -29,7 +29,7 @@ void SaddlePointSystem::assemble() {
     double* const column = A.colptr(i);
     column[i] = -epsilon_;
     std::fill(column + i + 1, column + m, 0.0);
-    std::copy_n(constraints_.jacobian() + i * n, n, column + m);
+    std::copy_n(constraints_.jacobian() + i * uword(layout_.moving), n, column + m);
   }
   for (uword j = 0; j < n; ++j) {  // Eq. (12): T0, which starts as M
     std::copy(M_.colptr(j) + j, M_.colptr(j) + n, A.colptr(m + j) + m + j);
@@ -39,13 +39,13 @@ void SaddlePointSystem::assemble() {
 
 void SaddlePointSystem::velocity_projection(const arma::vec& v) {
   coordinates_.zeros();  // Eq. (13)
-  first_derivative(v, multipliers_);
+  rates(v, multipliers_);
   multipliers_ *= -1.0;
 }
 
 void SaddlePointSystem::acceleration_projection(const arma::vec& v, const arma::vec& a) {
   coordinates_.zeros();  // Eq. (13)
-  second_derivative(v, a, multipliers_);
+  accelerations(v, a, multipliers_);
   multipliers_ *= -1.0;
 }
 

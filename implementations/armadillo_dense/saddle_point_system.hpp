@@ -14,7 +14,7 @@ class SaddlePointSystem : public Assembly {
  public:
   SaddlePointSystem(const Model& model, const StepSettings& settings);
 
-  /// Right-hand side of Eq. (12), with a (n) = a' and lambda (m).
+  /// Right-hand side of Eq. (12), with lambda (m).
   void residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
                 const arma::vec& lambda);
   /// The matrix of Eq. (12), with Phi_q of the last evaluate() and the forces of the last
@@ -25,11 +25,13 @@ class SaddlePointSystem : public Assembly {
   void solve() { solver_.solve(rhs_); }
   /// n: Δq, v' - v* or a' - a*.
   [[nodiscard]] const arma::vec& solution() const { return coordinates_; }
-  /// lambda (m) after a pass: with the last solution, then with Phi of the last evaluate().
-  void take_solution(arma::vec& lambda) const { lambda += 1.0 / h_ * multipliers_; }
-  void take_constraints(arma::vec& /*lambda*/) const {}
+  /// Nothing: update() does not need Phi.
+  void evaluate_last(const arma::vec& /*x*/) {}
+  /// lambda (m) after a pass, with the last solution.
+  void update(arma::vec& lambda) const { lambda += 1.0 / h_ * multipliers_; }
 
-  /// Right-hand sides of Eq. (13) for v' - v* and a' - a*, with v*, then with v' and a* (n).
+  /// Right-hand sides of Eq. (13) for v' - v* from v*, and for a' - a* from v' and a*. Phi_q of the
+  /// last evaluate() has to be that of the matrix.
   void velocity_projection(const arma::vec& v);
   void acceleration_projection(const arma::vec& v, const arma::vec& a);
 

@@ -15,7 +15,7 @@ DenseSimulation<System>::DenseSimulation(const Model& model, const StepSettings&
       m_(model.constraints()),
       q_(system_.layout().positions(model)),
       v_(system_.layout().zeros()),
-      a_(n_, arma::fill::zeros),
+      a_(system_.layout().zeros()),
       lambda_(m_, arma::fill::zeros) {
   std::ranges::copy(model.initial_velocity(), v_.begin());
 }
@@ -38,7 +38,7 @@ void DenseSimulation<System>::do_get_state(State& state) const {
 
 template <class System>
 StepOutcome DenseSimulation<System>::do_step() {
-  if (system_.is_driven()) system_.drive(time(), q_, v_);
+  if (system_.is_driven()) system_.drive(time(), q_, v_, a_);
   predict();
   phases_.enter(Phase::evaluation);
   system_.evaluate(q_);
@@ -58,15 +58,16 @@ StepOutcome DenseSimulation<System>::do_step() {
     system_.solve();  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
-    system_.take_solution(lambda_);
-    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
-      project();  // with the Phi_q of the matrix
-    }
     phases_.enter(Phase::evaluation);
-    system_.evaluate(q_);
+    if (outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes) {
+      system_.evaluate_last(q_);
+    } else {
+      system_.evaluate(q_);
+    }
     phases_.enter(Phase::other);
-    system_.take_constraints(lambda_);
+    system_.update(lambda_);
   }
+  project();
   return outcome;
 }
 
@@ -116,13 +117,16 @@ void DenseSimulation<System>::project() {
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::projection);
-  for (arma::uword i = 0; i < n_; ++i) v_[i] += system_.solution()[i];
-  if (settings_.projections == Projections::velocity) return;
+  v_.head(n_) += system_.solution();
+  if (settings_.projections == Projections::velocity) {
+    phases_.enter(Phase::other);
+    return;
+  }
   system_.acceleration_projection(v_, a_);
   phases_.enter(Phase::solve);
   system_.solve();  // Eq. (6) or (13)
-  phases_.enter(Phase::projection);
-  a_ += system_.solution();
+  phases_.enter(Phase::other);
+  a_.head(n_) += system_.solution();
 }
 
 template class DenseSimulation<PenaltySystem>;

@@ -25,7 +25,7 @@ class DenseSimulation final : public mbs::Simulation {
   void predict();
   /// Applies the solution Δq to q', v' and a'; whether max|Δq| <= tolerance (false with a NaN).
   [[nodiscard]] bool correct();
-  /// Eq. (6) or (13) as far as settings ask for it, while Phi_q is that of the matrix.
+  /// Eq. (6) or (13) as far as settings ask for it, with Phi_q still that of the last pass.
   void project();
 
   StepSettings settings_;
@@ -33,7 +33,7 @@ class DenseSimulation final : public mbs::Simulation {
   arma::uword n_, m_;
   arma::vec q_;       ///< extended (see Layout), m
   arma::vec v_;       ///< extended, m/s
-  arma::vec a_;       ///< n, m/s²
+  arma::vec a_;       ///< extended, m/s²
   arma::vec lambda_;  ///< m
 };
 
