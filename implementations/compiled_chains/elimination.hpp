@@ -173,10 +173,10 @@ MBS_CHAIN_INLINE Vec<V> forward(const V* G, const Vec<V>& f, const Vec<V>& b) {
 }
 
 /// S⁻¹ f − G x
-template <class Block, class V>
-MBS_CHAIN_INLINE Vec<V> backward(const Block& block, const Vec<V>& f, const Vec<V>& x) {
-  const Vec<V> c = adjugate_times(read(block.factors.scaled), read(f));
-  const V* G = block.factors.gain;
+template <class V>
+MBS_CHAIN_INLINE Vec<V> backward(const Factors<V>& factors, const Vec<V>& f, const Vec<V>& x) {
+  const Vec<V> c = adjugate_times(read(factors.scaled), read(f));
+  const V* G = factors.gain;
   return {c.x - G[0] * x.x - G[1] * x.y, c.y - G[2] * x.x - G[3] * x.y};
 }
 
@@ -193,7 +193,8 @@ MBS_CHAIN_INLINE void by_turns(Sweep& a, Sweep& b, int blocks) {
 
 /// A sweep inwards with the factors there are. `terms.point(block, data)` is a right-hand side but
 /// for links, `terms.link(block, next, data, f, inner)` adds to that of the block and of the next.
-template <auto kSide, class Store, class Terms>
+/// What remains of it is put into `kSide` of each block.
+template <class Store, class Terms, auto kSide>
 class InwardsSubstitution {
  public:
   using V = typename Store::V;
@@ -234,17 +235,17 @@ class InwardsSubstitution {
   Vec<V> inner_;   // what its link gives
 };
 
-template <auto kSide, class Store, class Terms>
+template <class Store, class Terms, auto kSide = &Store::B::f>
 MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
-  InwardsSubstitution<kSide, Store, Terms> sweep(chain, terms);
+  InwardsSubstitution<Store, Terms, kSide> sweep(chain, terms);
   if (chain.last == 0) return sweep.finish_single();
   for (int k = 1; k < chain.last; ++k) sweep.advance();
   sweep.finish();
 }
-template <auto kSide, class Store, class Terms>
+template <class Store, class Terms, auto kSide = &Store::B::f>
 MBS_CHAIN_INLINE void substitute_inwards(Store& first, const Terms& first_terms, Store& second,
                                          const Terms& second_terms) {
-  InwardsSubstitution<kSide, Store, Terms> a(first, first_terms), b(second, second_terms);
+  InwardsSubstitution<Store, Terms, kSide> a(first, first_terms), b(second, second_terms);
   if (first.last == 0) {
     a.finish_single();
     b.finish_single();
@@ -254,18 +255,18 @@ MBS_CHAIN_INLINE void substitute_inwards(Store& first, const Terms& first_terms,
 }
 
 /// The sweep outwards: `apply(block, x)` gets the solution of each block.
-template <auto kSide, class Store, class Apply>
+template <class Store, class Apply, auto kSide>
 class OutwardsSubstitution {
  public:
   using V = typename Store::V;
 
   MBS_CHAIN_INLINE OutwardsSubstitution(Store& chain, const Apply& apply)
       : apply_(apply), block_(chain.blocks.data() + chain.last), x_(block_->*kSide) {
-    apply_(*block_, x_);  // of the last block f is the solution itself
+    apply_(*block_, x_);  // of the last block it is the solution itself
   }
   MBS_CHAIN_INLINE void advance() {
     --block_;
-    x_ = backward(*block_, block_->*kSide, x_);
+    x_ = backward(block_->factors, block_->*kSide, x_);
     apply_(*block_, x_);
   }
   MBS_CHAIN_INLINE void finish() {}
@@ -276,30 +277,16 @@ class OutwardsSubstitution {
   Vec<V> x_;
 };
 
-template <auto kSide, class Store, class Apply>
+template <class Store, class Apply, auto kSide = &Store::B::f>
 MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
-  OutwardsSubstitution<kSide, Store, Apply> sweep(chain, apply);
+  OutwardsSubstitution<Store, Apply, kSide> sweep(chain, apply);
   for (int k = 0; k < chain.last; ++k) sweep.advance();
 }
-template <auto kSide, class Store, class Apply>
+template <class Store, class Apply, auto kSide = &Store::B::f>
 MBS_CHAIN_INLINE void substitute_outwards(Store& first, const Apply& apply_first, Store& second,
                                           const Apply& apply_second) {
-  OutwardsSubstitution<kSide, Store, Apply> a(first, apply_first), b(second, apply_second);
+  OutwardsSubstitution<Store, Apply, kSide> a(first, apply_first), b(second, apply_second);
   by_turns(a, b, first.last);
-}
-
-template <class Store, class Terms>
-MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
-  substitute_inwards<&Store::B::f>(chain, terms);
-}
-template <class Store, class Apply>
-MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
-  substitute_outwards<&Store::B::f>(chain, apply);
-}
-template <class Store, class Apply>
-MBS_CHAIN_INLINE void substitute_outwards(Store& first, const Apply& apply_first, Store& second,
-                                          const Apply& apply_second) {
-  substitute_outwards<&Store::B::f>(first, apply_first, second, apply_second);
 }
 
 }  // namespace mbs::compiled_chains

@@ -5,11 +5,11 @@
 
 namespace mbs::compiled_chains {
 
-/// A point that stays where the last pass evaluated it: there it is projected. f is where that pass
-/// has left it, until the next one needs f for itself.
+/// x is where the last pass evaluated the point, so that projections find its Φq; f is where it is
+/// since, until the next pass has taken it from there.
 template <class V, class Rods>
 struct PassBlock : Block<V, Rods> {
-  [[nodiscard]] MBS_CHAIN_INLINE Vec<V>& position() { return this->f; }
+  static constexpr auto kPosition = &PassBlock::f;
 };
 
 /// What decides about a pass.
@@ -60,8 +60,8 @@ class Newton {
     return least;
   }
   /// Of two groups by turns: between a block's division and its factors comes the other's block.
-  static void inwards(Store& a, const Mask& active_a, V& least_a, Store& b,
-                      const Mask& active_b, V& least_b) {
+  static void inwards(Store& a, const Mask& active_a, V& least_a, Store& b, const Mask& active_b,
+                      V& least_b) {
     InwardsSweep sweep_a(a, active_a), sweep_b(b, active_b);  // elsewhere they would be in memory
     for (int k = 0; k < a.last; ++k) {
       sweep_a.eliminate();
@@ -143,8 +143,8 @@ class Newton {
   };
 
   MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
-                                               const Mask& active, V& least,
-                                               Carry<V>& carry, Pending& pending) {
+                                               const Mask& active, V& least, Carry<V>& carry,
+                                               Pending& pending) {
     Vec<V> f = data.mass.outer(read(next.u)) - data.force;
     const Sym<V> own = point(block, data, f, active);
     pending.e = data.link.vector(next.x - block.x);
@@ -194,8 +194,8 @@ class Newton {
   };
 
   /// Eliminates the last block.
-  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Mask& active,
-                                            V& least, const Carry<V>& carry) {
+  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Mask& active, V& least,
+                                            const Carry<V>& carry) {
     Vec<V> f = Vec<V>{} - data.force;
     const Sym<V> own = point(block, data, f, active);
     Vec<V> x;

@@ -109,9 +109,8 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods, PassBlock>> {
   template <bool kFirst>
   void inwards() {
     if (!more_) return;
-    result_.least = kFirst || whole_
-                        ? Newton<Store, kFirst>::inwards(chain_, Mask())
-                        : Newton<Store, false, true>::inwards(chain_, active_);
+    result_.least = kFirst || whole_ ? Newton<Store, kFirst>::inwards(chain_, Mask())
+                                     : Newton<Store, false, true>::inwards(chain_, active_);
   }
   template <bool kFirst>
   void outwards() {
@@ -126,7 +125,7 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods, PassBlock>> {
   }
   void project() {
     using Project = Projection<Store>;
-    if (projections_ == Projections::none) return Project::none(chain_);
+    if (projections_ == Projections::none) return Project::settle(chain_);
     Project::velocity(chain_);
     if (projections_ == Projections::both) Project::acceleration(chain_);
   }

@@ -141,7 +141,7 @@ class SaddleProjection {
   using V = typename Store::V;
   using B = typename Store::B;
 
-  static void none(Store& chain) {
+  static void settle(Store& chain) {
     for (B& block : chain.blocks) block.w = block.w + block.u;
   }
   static void velocity(Store& chain) {

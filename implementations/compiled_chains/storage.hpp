@@ -32,7 +32,7 @@ struct Block {
   Vec<V> f;  // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 
-  [[nodiscard]] Vec<V>& position() { return x; }
+  static constexpr auto kPosition = &Block::x;  // between steps
 };
 
 /// The vector difference of local coordinates + offset, whose square is to be `square`. It is zero
@@ -226,8 +226,8 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_state(int block, int lane, const S
     -> void {
   B& to = blocks[block];
   const int i = from.here->coordinate;
-  to.position().x[lane] = units.length * (state.q[i] - from.here->origin[0]);
-  to.position().y[lane] = units.length * (state.q[i + 1] - from.here->origin[1]);
+  (to.*B::kPosition).x[lane] = units.length * (state.q[i] - from.here->origin[0]);
+  (to.*B::kPosition).y[lane] = units.length * (state.q[i + 1] - from.here->origin[1]);
   to.w.x[lane] = units.velocity * state.v[i];
   to.w.y[lane] = units.velocity * state.v[i + 1];
   to.u.x[lane] = units.acceleration * state.a[i];
@@ -286,7 +286,7 @@ auto Storage<Use, MassOf, Rods, BlockOf>::get(int chain, const Topology& topolog
   const double acceleration = 1.0 / units.acceleration, factor = 1.0 / units.multiplier;
   for (int k = 0; k <= last; ++k) {
     const B& from = blocks[k];  // scaled in all lanes at once, which takes as long as in one
-    const Vec<V>& x = const_cast<B&>(from).position();
+    const Vec<V>& x = from.*B::kPosition;
     const V q[2] = {length * x.x, length * x.y};
     const V v[2] = {velocity * from.w.x, velocity * from.w.y};
     const V a[2] = {acceleration * from.u.x, acceleration * from.u.y};

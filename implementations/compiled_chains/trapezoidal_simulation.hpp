@@ -80,7 +80,7 @@ class TrapezoidalSimulation final : public Simulation {
   void project() {
     const bool due = --until_projection_ == 0;
     if (due) until_projection_ = settings_.projections_every;
-    if (!due || settings_.projections == Projections::none) return Project::none(chain_);
+    if (!due || settings_.projections == Projections::none) return Project::settle(chain_);
     Project::velocity(chain_);
     if (settings_.projections == Projections::both) Project::acceleration(chain_);
   }
