@@ -177,7 +177,7 @@ bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
   }
 }
 
-/// Projections and λ, after the last correction.
+/// λ and the projections, after the last correction. Φ alone leaves Φq what it is in the factors.
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::finish(bool updates, StepOutcome& outcome) {
   if (outcome.status == StepStatus::pass_limit) due_ = true;

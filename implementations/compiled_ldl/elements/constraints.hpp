@@ -46,11 +46,11 @@ class Constraints {
   void add_transposed(const S* t, const S& factor, S* y) const;
   /// y −= h Φqᵀ (λ + α φ).
   void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
-  /// t = Φq x, with the columns of fixed points; + 2 u̇·B ẇ if there is v, − given if there is that.
+  /// t = Φq x, with the columns of fixed points; + 2 u̇·B ẇ if there is v, − given if not null.
   void product(const S* x, S* t, const S* v = nullptr, const S* given = nullptr) const;
   /// y += f Φqᵀ t with that t, in one sweep.
   void add_projection(const S* x, const S* v, const S* given, const S& f, S* y) const;
-  /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
+  /// t = 2 u̇·B ẇ, which is Φ̇q v.
   void velocity_terms(const S* v, S* t) const;
 
   /// Of rows of Φq as Σ n_i e_i (Changing): e_i of constraint k has (i, row, entry), to

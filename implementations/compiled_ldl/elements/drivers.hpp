@@ -16,8 +16,10 @@ class Drivers {
   /// What driven points have of q, v and a, values of constraints, force = Q's constant part.
   void drive(double t, S* q, S* v, S* a, Constraints<S, D>& constraints, S* force);
   /// ṡ and s̈ of all constraints; nullptr: none is driven.
-  const S* rates() const { return values_.empty() ? nullptr : rates_.data(); }
-  const S* accelerations() const { return values_.empty() ? nullptr : accelerations_.data(); }
+  [[nodiscard]] const S* rates() const { return values_.empty() ? nullptr : rates_.data(); }
+  [[nodiscard]] const S* accelerations() const {
+    return values_.empty() ? nullptr : accelerations_.data();
+  }
 
  private:
   struct Value {
