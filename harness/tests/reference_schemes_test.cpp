@@ -103,6 +103,9 @@ TEST(ReferenceSchemes, SettingsChangeTheWayAndNotTheMotion) {
   const auto with = [&](auto change) {
     StepSettings settings = with_scheme(scene.model, Scheme::penalty, 1e-3);
     settings.tolerance = 1e-13;
+    settings.tangent = TangentReuse::kept;  // which needs the smallest penalty factor
+    settings.penalty = automatic_penalty(scene.model, settings);
+    settings.tangent = TangentReuse::none;
     change(settings);
     return run_reference_for(scene, settings, 0.3);
   };

@@ -15,32 +15,40 @@ struct Carry {
   Vec<V> force{};   // what its right-hand side gains
 };
 
-/// Eliminates a block, A = own + what the one before leaves: S = A + e eᵀ, z = adj(A) e. In a
-/// single chain S is not made from A, but beside it: only its determinant is what the next block
-/// waits for.
+/// Eliminates a block, A = own + what the one before leaves: S = A + e eᵀ, z = adj(A) e. Returns
+/// 1/σ of σ = δ + e·z: det S does not fit z to all digits, and the large parts of what crosses a
+/// link would not cancel. But det S is there sooner. In a single chain the next block waits for it,
+/// and gets 1/det S, which is good enough for its matrix.
 template <class V, class Mass>
-MBS_CHAIN_INLINE void eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e, Sym<V>& S,
-                                Vec<V>& z, V& least, Carry<V>& carry) {
+MBS_CHAIN_INLINE V eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e, Sym<V>& S,
+                             Vec<V>& z, V& least, Carry<V>& carry) {
   const Sym<V> A = plus(own, carry.reciprocal, carry.update);
-  if constexpr (std::is_same_v<V, Pair>) {
-    S = plus(plus_square(own, e), carry.reciprocal, carry.update);
-  } else {
-    S = plus_square(A, e);
-  }
-  const V sigma = determinant(S);
-  const V reciprocal = reciprocal_of(sigma);
+  const V delta = determinant(A);
   z = adjugate_times(A, e);
-  carry.update = mass.update(determinant(A), z, e, S);
-  carry.reciprocal = reciprocal;
+  const V sigma = delta + dot(e, z);
+  S = plus_square(A, e);
+  V reciprocal;
+  if constexpr (std::is_same_v<V, Pair>) {
+    const V rough = reciprocal_of(determinant(S));
+    reciprocal = rough + rough * ((V{} + 1.0) - sigma * rough);
+    carry.reciprocal = rough;
+  } else {
+    reciprocal = reciprocal_of(sigma);
+    carry.reciprocal = reciprocal;
+  }
+  carry.update = mass.update(delta, z, e, S);
   least = smaller(least, smaller(S.xx, sigma));
+  return reciprocal;
 }
 
-/// S⁻¹ and G of a block.
+/// S⁻¹ and G of a block. Returns S⁻¹ e.
 template <class V, class Mass>
-MBS_CHAIN_INLINE void finish(Factors<V>& to, const Mass& mass, const Sym<V>& S, const Vec<V>& z,
-                             const V& reciprocal, const Vec<V>& e) {
+MBS_CHAIN_INLINE Vec<V> finish(Factors<V>& to, const Mass& mass, const Sym<V>& S, const Vec<V>& z,
+                               const V& reciprocal, const Vec<V>& e) {
   to.scaled = {reciprocal * S.xx, reciprocal * S.xy, reciprocal * S.yy};
-  mass.gain(to.scaled, reciprocal * z, e, to.gain);
+  const Vec<V> y = reciprocal * z;
+  mass.gain(to.scaled, y, e, to.gain);
+  return y;
 }
 
 template <class Use, class V>
@@ -74,9 +82,9 @@ struct Together {
     return A;
   }
   template <class V, class Mass>
-  MBS_CHAIN_INLINE static void eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e,
-                                         Sym<V>& S, Vec<V>& z, V& least, Carry<V>& carry) {
-    compiled_chains::eliminate(mass, own, e, S, z, least, carry);
+  MBS_CHAIN_INLINE static V eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e,
+                                      Sym<V>& S, Vec<V>& z, V& least, Carry<V>& carry) {
+    return compiled_chains::eliminate(mass, own, e, S, z, least, carry);
   }
   template <class Use, class V>
   MBS_CHAIN_INLINE static Sym<V> meet(const Sym<V>& own, const Carry<V>& carry, const Vec<V>& f,
@@ -126,9 +134,9 @@ struct Apart {
   }
 
   template <class V, class Mass, int kRods>
-  MBS_CHAIN_INLINE static void eliminate(const Mass& mass, const OwnParts<V, kRods>& own,
-                                         const Vec<V>& e, Sym<V>& S, Vec<V>& z, V& least,
-                                         Carry<V>& carry) {
+  MBS_CHAIN_INLINE static V eliminate(const Mass& mass, const OwnParts<V, kRods>& own,
+                                      const Vec<V>& e, Sym<V>& S, Vec<V>& z, V& least,
+                                      Carry<V>& carry) {
     const Sym<V> all = plus_square(own.rods, e);
     V areas = own.areas;
     Vec<V> turned{};
@@ -146,6 +154,7 @@ struct Apart {
     carry.update = mass.update(determinant_with(light, own.rods, own.areas), z, e, S);
     carry.reciprocal = reciprocal;
     least = smaller(least, smaller(S.xx, sigma));
+    return reciprocal;
   }
 
   /// See compiled_chains::meet.
@@ -172,13 +181,20 @@ MBS_CHAIN_INLINE Vec<V> forward(const V* G, const Vec<V>& f, const Vec<V>& b) {
   return {f.x - G[0] * b.x - G[2] * b.y, f.y - G[1] * b.x - G[3] * b.y};
 }
 
-/// S⁻¹ f − G x
+/// c − G x
 template <class V>
-MBS_CHAIN_INLINE Vec<V> backward(const Factors<V>& factors, const Vec<V>& f, const Vec<V>& x) {
-  const Vec<V> c = adjugate_times(read(factors.scaled), read(f));
-  const V* G = factors.gain;
+MBS_CHAIN_INLINE Vec<V> backward(const V* G, const Vec<V>& c, const Vec<V>& x) {
   return {c.x - G[0] * x.x - G[1] * x.y, c.y - G[2] * x.x - G[3] * x.y};
 }
+
+/// S⁻¹ f of a block that keeps its right-hand side f.
+template <auto kSide>
+struct Divided {
+  template <class B>
+  MBS_CHAIN_INLINE auto operator()(const B& block) const {
+    return adjugate_times(read(block.factors.scaled), read(block.*kSide));
+  }
+};
 
 /// Two sweeps by turns, block by block: what one waits for is the other's work.
 template <class Sweep>
@@ -254,8 +270,8 @@ MBS_CHAIN_INLINE void substitute_inwards(Store& first, const Terms& first_terms,
   }
 }
 
-/// The sweep outwards: `apply(block, x)` gets the solution of each block.
-template <class Store, class Apply, auto kSide>
+/// The sweep outwards: `apply(block, x)` gets the solution of each block, `Solved` finds S⁻¹ f.
+template <class Store, class Apply, auto kSide, class Solved>
 class OutwardsSubstitution {
  public:
   using V = typename Store::V;
@@ -266,26 +282,26 @@ class OutwardsSubstitution {
   }
   MBS_CHAIN_INLINE void advance() {
     --block_;
-    x_ = backward(block_->factors, block_->*kSide, x_);
+    x_ = backward(block_->factors.gain, Solved()(*block_), x_);
     apply_(*block_, x_);
   }
   MBS_CHAIN_INLINE void finish() {}
 
  private:
-  const Apply& apply_;
+  Apply apply_;
   typename Store::B* block_;
   Vec<V> x_;
 };
 
-template <class Store, class Apply, auto kSide = &Store::B::f>
+template <class Store, class Apply, auto kSide = &Store::B::f, class Solved = Divided<kSide>>
 MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
-  OutwardsSubstitution<Store, Apply, kSide> sweep(chain, apply);
+  OutwardsSubstitution<Store, Apply, kSide, Solved> sweep(chain, apply);
   for (int k = 0; k < chain.last; ++k) sweep.advance();
 }
-template <class Store, class Apply, auto kSide = &Store::B::f>
+template <class Store, class Apply, auto kSide = &Store::B::f, class Solved = Divided<kSide>>
 MBS_CHAIN_INLINE void substitute_outwards(Store& first, const Apply& apply_first, Store& second,
                                           const Apply& apply_second) {
-  OutwardsSubstitution<Store, Apply, kSide> a(first, apply_first), b(second, apply_second);
+  OutwardsSubstitution<Store, Apply, kSide, Solved> a(first, apply_first), b(second, apply_second);
   by_turns(a, b, first.last);
 }
 

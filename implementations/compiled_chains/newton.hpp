@@ -9,6 +9,8 @@ namespace mbs::compiled_chains {
 /// since, until the next pass has taken it from there.
 template <class V, class Rods>
 struct PassBlock : Block<V, Rods> {
+  Vec<V> side;  // what is between two sweeps and has no place in f
+
   static constexpr auto kPosition = &PassBlock::f;
 };
 
@@ -52,7 +54,6 @@ class Newton {
         eliminate_block(*block, block[1], **data, active, least, carry, now);
         finish_block(block[-1], *data[-1], before, active, carry);
         before = now;
-        before.f = carry.force + before.f;
       }
       finish_block(block[-1], *data[-1], before, active, carry);
     }
@@ -77,13 +78,14 @@ class Newton {
   }
   static V outwards(Store& chain, const Mask& active) {
     LargestOf<typename Store::Use> largest;
-    substitute_outwards(chain, Move{largest, active});
+    substitute_outwards<Store, Move, &B::f, Solved>(chain, Move{largest, active});
     return largest.value();
   }
   static void outwards(Store& a, const Mask& active_a, V& largest_a, Store& b, const Mask& active_b,
                        V& largest_b) {
     LargestOf<typename Store::Use> of_a, of_b;
-    substitute_outwards(a, Move{of_a, active_a}, b, Move{of_b, active_b});
+    substitute_outwards<Store, Move, &B::f, Solved>(a, Move{of_a, active_a}, b,
+                                                    Move{of_b, active_b});
     largest_a = of_a.value();
     largest_b = of_b.value();
   }
@@ -107,6 +109,25 @@ class Newton {
     if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), active);
     return multiplier + violation;
   }
+
+  /// c = S⁻¹ (f − t e) for the sweep outwards. In S⁻¹ (t e) most digits would cancel: y = S⁻¹ e
+  /// has them. In a single chain that sweep has time to spare, and S⁻¹ f is left to it.
+  MBS_CHAIN_INLINE static void keep_solution(B& block, const Sym<V>& scaled, const Vec<V>& f,
+                                             const Vec<V>& pull_solved, const Mask& active) {
+    if constexpr (kLeavesDivision) {
+      block.f = f;
+      block.side = pull_solved;
+    } else {
+      set<kMasked>(block.f, adjugate_times(scaled, f) - pull_solved, active);
+    }
+  }
+  struct Solved {
+    MBS_CHAIN_INLINE Vec<V> operator()(const B& block) const {
+      if constexpr (kLeavesDivision) return Divided<&B::f>()(block) - block.side;
+      return read(block.f);
+    }
+  };
+  static constexpr bool kLeavesDivision = std::is_same_v<typename Store::Use, Pair>;  // no masks
 
   /// Eqs. (4), (2)
   struct Move {
@@ -138,30 +159,32 @@ class Newton {
     Sym<V> S;
     Vec<V> z, e;
     V reciprocal;
-    Vec<V> f;      // its right-hand side
-    Vec<V> inner;  // what its link gives to the next one's
+    V tension;     // of its link
+    Vec<V> f;      // its right-hand side without that
+    Vec<V> inner;  // what the next one's gets, without that
   };
 
   MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
                                                const Mask& active, V& least, Carry<V>& carry,
                                                Pending& pending) {
-    Vec<V> f = data.mass.outer(read(next.u)) - data.force;
-    const Sym<V> own = point(block, data, f, active);
+    pending.f = data.mass.outer(read(next.u)) - data.force;
+    const Sym<V> own = point(block, data, pending.f, active);
     pending.e = data.link.vector(next.x - block.x);
-    const V violation = data.link.violation(pending.e);
-    const Vec<V> pull = product(tension(block.link, violation, active), pending.e);
-    pending.f = f - pull;
-    pending.inner = pull + data.mass.inner(block.u);
-    eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
-    pending.reciprocal = carry.reciprocal;
+    pending.tension = tension(block.link, data.link.violation(pending.e), active);
+    pending.inner = data.mass.inner(block.u);
+    pending.reciprocal = eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
   }
 
   MBS_CHAIN_INLINE static void finish_block(B& block, const C& data, const Pending& pending,
                                             const Mask& active, Carry<V>& carry) {
     Factors<V> factors;
-    finish(factors, data.mass, pending.S, pending.z, pending.reciprocal, pending.e);
-    set<kMasked>(block.f, pending.f, active);
-    carry.force = forward(factors.gain, pending.inner, pending.f);
+    const Vec<V> y =
+        finish(factors, data.mass, pending.S, pending.z, pending.reciprocal, pending.e);
+    const Vec<V> f = carry.force + pending.f;
+    const V t = pending.tension;
+    keep_solution(block, factors.scaled, f, t * y, active);
+    const Vec<V> pull = product(t, pending.e);
+    carry.force = forward(factors.gain, pending.inner + pull, f - pull);
     set<kMasked>(block.factors.scaled, factors.scaled, active);
     for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
   }
@@ -178,7 +201,6 @@ class Newton {
       eliminate_block(*block, block[1], **data, active, least, carry, pending);
     }
     MBS_CHAIN_INLINE void complete() {
-      pending.f = carry.force + pending.f;
       finish_block(*block, **data, pending, active, carry);
       ++block;
       ++data;

@@ -5,8 +5,8 @@
 
 namespace mbs::compiled_chains {
 
-/// v and a give way to right-hand sides, these to solutions: f has positions. λ of the last pass is
-/// completed with the velocities, Eq. (1).
+/// Solved for what v* and a* have too much. The d and e are those of the last pass, like T; λ of
+/// that pass is completed with the velocities, Eq. (1).
 template <class Store>
 class Projection {
  public:
@@ -35,21 +35,17 @@ class Projection {
   using B = typename Store::B;
   using C = typename Store::C;
 
-  template <auto kSide>
-  struct InPlace {
-    MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) const { block.*kSide = x; }
-  };
   template <class Terms>
   static void solve(Store& chain) {
     substitute_inwards<Store, Terms, Terms::kSide>(chain, Terms(chain));
-    using Set = InPlace<Terms::kSide>;
-    substitute_outwards<Store, Set, Terms::kSide>(chain, Set());
+    using Apply = typename Terms::TakeAway;
+    substitute_outwards<Store, Apply, Terms::kSide>(chain, Apply(chain));
   }
   template <class Terms>
   static void solve(Store& a, Store& b) {
     substitute_inwards<Store, Terms, Terms::kSide>(a, Terms(a), b, Terms(b));
-    using Set = InPlace<Terms::kSide>;
-    substitute_outwards<Store, Set, Terms::kSide>(a, Set(), b, Set());
+    using Apply = typename Terms::TakeAway;
+    substitute_outwards<Store, Apply, Terms::kSide>(a, Apply(a), b, Apply(b));
   }
 
   MBS_CHAIN_INLINE static void settle_rods(B& block, const C& data, const Vec<V>& x) {
@@ -63,52 +59,78 @@ class Projection {
 
   // Below, what a block has in common with the one before has been read with that.
 
-  /// M v*
+  /// (Δt²/4) α Jᵀ J v*
   struct Velocity {
-    static constexpr auto kSide = &B::w;
-    Vec<V> x, v;  // of the block: q', v*
+    static constexpr auto kSide = &B::side;
+    Vec<V> x, v;  // of the block: q' of the last pass, v*
 
     MBS_CHAIN_INLINE explicit Velocity(const Store& chain)
-        : x(chain.blocks[0].f), v(chain.blocks[0].w + chain.blocks[0].u) {}
+        : x(chain.blocks[0].x), v(chain.blocks[0].w + chain.blocks[0].u) {}
 
-    MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) const {
-      settle_rods(block, data, x);
-      return data.mass.times(v);
+    MBS_CHAIN_INLINE Vec<V> point(const B&, const C& data) const {
+      Vec<V> f{};
+      for (int j = 0; j < Store::kRods; ++j) {
+        const Vec<V> d = data.rods[j].vector(x);
+        f = f + dot(d, v) * d;
+      }
+      return f;
     }
-    MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
-      const Vec<V> x_inner = read(next.f);
-      settle_link(block, data, x_inner - x);
+    MBS_CHAIN_INLINE void link(const B&, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
+      const Vec<V> x_inner = read(next.x), v_inner = next.w + next.u;
+      const Vec<V> e = data.link.vector(x_inner - x);
+      inner = product(dot(e, v_inner - v), e);
+      f = f - inner;
       x = x_inner;
-      inner = data.mass.inner(v);
-      v = next.w + next.u;
-      f = f + data.mass.outer(v);
+      v = v_inner;
     }
+    /// Completes λ as well: outwards there is less to do.
+    struct TakeAway {
+      const C* const* data;
+      Vec<V> inner;  // q' of the block inwards; the last block has no link, so there it is any
+
+      explicit TakeAway(const Store& chain) : data(chain.constants.data() + chain.last) {}
+      MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) {
+        block.w = (block.w + block.u) - x;
+        const Vec<V> q = read(block.f);
+        settle_rods(block, **data, q);
+        settle_link(block, **data, inner - q);
+        inner = q;
+        --data;
+      }
+    };
   };
 
-  /// M a* − (Δt²/4) α Jᵀ Φ̇q v', J of the last pass
+  /// (Δt²/4) α Jᵀ (J a* + Φ̇q v')
   struct Acceleration {
-    static constexpr auto kSide = &B::u;
+    static constexpr auto kSide = &B::x;
     Vec<V> x, w, u;  // of the block: q' of the last pass, v', a*
 
     MBS_CHAIN_INLINE explicit Acceleration(const Store& chain)
         : x(chain.blocks[0].x), w(chain.blocks[0].w), u(chain.blocks[0].u) {}
 
     MBS_CHAIN_INLINE Vec<V> point(const B&, const C& data) const {
-      Vec<V> f = data.mass.times(u);
+      Vec<V> f{};
       const V half_square = (V{} + 0.5) * dot(w, w);
-      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * data.rods[j].vector(x);
+      for (int j = 0; j < Store::kRods; ++j) {
+        const Vec<V> d = data.rods[j].vector(x);
+        f = f + (dot(d, u) + half_square) * d;
+      }
       return f;
     }
     MBS_CHAIN_INLINE void link(const B&, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
       const Vec<V> x_inner = read(next.x), w_inner = read(next.w), u_inner = read(next.u);
       const Vec<V> rate = w_inner - w;
-      const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * data.link.vector(x_inner - x);
-      f = f + (data.mass.outer(u_inner) + pull);
-      inner = data.mass.inner(u) - pull;
+      const Vec<V> e = data.link.vector(x_inner - x);
+      inner = product(dot(e, u_inner - u) + (V{} + 0.5) * dot(rate, rate), e);
+      f = f - inner;
       x = x_inner;
       w = w_inner;
       u = u_inner;
     }
+    struct TakeAway {
+      explicit TakeAway(const Store&) {}
+      MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) const { block.u = block.u - x; }
+    };
   };
 };
 

@@ -165,8 +165,8 @@ class RattleStage {
       block->e = e;
       Sym<V> S;
       Vec<V> z;
-      Elimination::eliminate((*data)->mass, own, e, S, z, least, carry);
-      finish(block->factors, (*data)->mass, S, z, carry.reciprocal, e);
+      const V reciprocal = Elimination::eliminate((*data)->mass, own, e, S, z, least, carry);
+      finish(block->factors, (*data)->mass, S, z, reciprocal, e);
       if (!kVelocity) continue;
       Vec<V> f = length * (*data)->force + terms.point(*block, **data);
       Vec<V> inner;

@@ -1,4 +1,4 @@
-// Four bounds on alpha, two from below and two from above.
+// Bounds on alpha from below and from above.
 #include "describe/penalty_window.hpp"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace mbs {
 namespace {
 
 // With beta = alpha dt^2/4 and omega the rate of turning; fitted, see penalty_window.md here.
-constexpr double kSlowestMode = 0.1;   // beta s_min omega dt >= this
-constexpr double kSingular = 3.0;      // beta s_row omega dt >= this
-constexpr double kNonlinear = 0.02;    // beta s_row (omega dt)^3 <= this
-constexpr double kCancellation = 0.4;  // u l_r sqrt(beta s_mean) <= this times l (omega dt)^4
+constexpr double kSlowestMode = 0.1;  // beta s_min omega dt >= this
+constexpr double kSingular = 3.0;     // beta s_row omega dt >= this
+constexpr double kCancellation = 10;  // u beta s_mean <= this times (omega dt)^2
 // In single precision:
+constexpr double kNonlinear = 0.02;    // beta s_row (omega dt)^3 <= this
 constexpr double kOnePass = 2e-7;      // beta s_min (omega dt)^4 >= this
 constexpr double kRoundedMass = 1e-2;  // u beta s_mean <= this
 
@@ -45,25 +45,25 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
     smallest = std::numeric_limits<double>::infinity();  // it says nothing there
   }
   const double mean = mean_constraint_eigenvalue(model);
-  const double noise = unit_roundoff(Precision::double_precision) * rounding_length(model);
+  const double unit = unit_roundoff(single ? settings.precision : Precision::double_precision);
   const auto bounds_at = [&](double turned) {
-    return Bounds{
-        .slowest = single ? kOnePass / (smallest * std::pow(turned, 4))
-                          : kSlowestMode / (smallest * turned),
-        .singular = kSingular / (row * turned),
-        .newton = kNonlinear / (row * std::pow(turned, 3)),
-        .rounding =
-            single
-                ? kRoundedMass / (unit_roundoff(settings.precision) * mean)
-                : std::pow(kCancellation * fastest.length * std::pow(turned, 4) / noise, 2) / mean};
+    return Bounds{.slowest = single ? kOnePass / (smallest * std::pow(turned, 4))
+                                    : kSlowestMode / (smallest * turned),
+                  .singular = kSingular / (row * turned),
+                  .newton = single ? kNonlinear / (row * std::pow(turned, 3))
+                                   : std::numeric_limits<double>::infinity(),
+                  .rounding = single ? kRoundedMass / (unit * mean)
+                                     : kCancellation * turned * turned / (unit * mean)};
   };
   const Bounds bounds = bounds_at(turn);
-  // At the turn a step where both upper bounds meet; in single precision, where the slowest mode's
-  // bound falls faster than they do, at that where it meets the other lower one, if that is longer.
-  double longer = std::pow(bounds.newton / bounds.rounding, single ? 1.0 / 3 : 1.0 / 11);
-  if (single) longer = std::max(longer, std::cbrt(bounds.slowest / bounds.singular));
-  const Bounds widest = bounds_at(turn * longer);
-  window.widest = widest.upper() / widest.lower();
+  if (single) {
+    // At the turn a step where both upper bounds meet; the slowest mode's bound falls faster than
+    // they do: at that where it meets the other lower one, if that is longer.
+    const double longer = std::max(std::cbrt(bounds.newton / bounds.rounding),
+                                   std::cbrt(bounds.slowest / bounds.singular));
+    const Bounds widest = bounds_at(turn * longer);
+    window.widest = widest.upper() / widest.lower();
+  }
   window.slowest_mode = bounds.slowest > bounds.singular;
   window.cancellation = bounds.rounding < bounds.newton;
   const double per_beta = 4.0 / (step * step);

@@ -17,30 +17,19 @@ namespace mbs {
 namespace {
 
 /// upper / lower of a window that is worth a warning when it is no wider.
-double least_width(const PenaltyWindow& window, const StepSettings& settings, PenaltyFrom from) {
-  if (settings.precision == Precision::single_precision) {
-    return window.slowest_mode ? kClosedBySlowestInSingle : kClosedInSingle;
-  }
-  return from == PenaltyFrom::rule ? kClosedByRule : 1 / kFarAbove;
+double least_width(const PenaltyWindow& window) {
+  return window.slowest_mode ? kClosedBySlowestInSingle : kClosedInSingle;
 }
 
-/// Whether the window is wider at shorter steps. The bound of the slowest mode in single precision
-/// recedes faster with longer steps than the nonlinearity comes.
-bool is_too_long(const PenaltyWindow& window, const StepSettings& settings) {
-  const bool single = settings.precision == Precision::single_precision;
-  return !window.cancellation && !(single && window.slowest_mode);
-}
-
-/// Where no penalty factor of the user's own is to blame: what to change instead.
-std::string step_warning(const PenaltyWindow& window, const StepSettings& settings,
-                         PenaltyFrom from) {
-  const bool is_long = is_too_long(window, settings);
-  const bool is_double = settings.precision == Precision::double_precision;
+/// In single precision, where no penalty factor of the user's own is to blame: what to change
+/// instead. The bound of the slowest mode recedes faster with longer steps than the nonlinearity
+/// comes.
+std::string step_warning(const PenaltyWindow& window, const StepSettings& settings) {
+  const bool is_long = !window.cancellation && !window.slowest_mode;
   const std::string what = fmt::format(
-      "the penalty form on this scene{} (an estimate: mbs describe): try --scheme saddle-point{}",
-      is_double ? ", if it passes singular positions" : "",
-      is_long || is_double ? "" : ", --precision double");
-  if (window.widest < least_width(window, settings, from)) return "no step suits " + what;
+      "the penalty form on this scene (an estimate: mbs describe): try --scheme saddle-point{}",
+      is_long ? "" : ", --precision double");
+  if (window.widest < least_width(window)) return "no step suits " + what;
   return fmt::format("the step {:g} s is too {} for {}, or a {} step", settings.step,
                      is_long ? "long" : "short", what, is_long ? "shorter" : "longer");
 }
@@ -55,14 +44,19 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         "estimate: mbs describe)",
         settings.penalty, side, bound, what, settings.step);
   };
-  if (window.upper < window.lower * least_width(window, settings, from)) {
-    return step_warning(window, settings, from);
+  if (settings.precision == Precision::single_precision) {
+    const bool is_spoiled = from == PenaltyFrom::rule && !window.cancellation &&
+                            settings.penalty > window.upper * kFarAboveByRule;
+    if (is_spoiled || window.upper < window.lower * least_width(window)) {
+      return step_warning(window, settings);
+    }
   }
   if (from == PenaltyFrom::rule) {
-    const bool is_spoiled =
-        !window.cancellation && settings.penalty > window.upper * kFarAboveByRule;
-    return is_spoiled || settings.penalty < window.stable ? step_warning(window, settings, from)
-                                                          : "";
+    if (settings.penalty >= window.stable) return "";
+    return fmt::format(
+        "no penalty factor is large enough for the slowest mode of this scene and small enough for "
+        "rounding at step {:g} s (an estimate: mbs describe): the motion may be lost",
+        settings.step);
   }
   if (settings.penalty < window.lower / kFarBelow) {
     return far("below", window.lower, "least that is sure to hold the constraints");

@@ -17,10 +17,9 @@ inline constexpr int kMostVariablesToWarn = 20'000;
 /// that meet no singular position work well below it.
 inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
 
-/// The automatic factor in double precision is `ok` over 2 s far outside of what is best: rounding
-/// spoils it from where the window has closed to this factor, nonlinearity from above its upper
-/// bound by that one.
-inline constexpr double kClosedByRule = 0.01, kFarAboveByRule = 25.0;
+/// The automatic factor in single precision is `ok` over 2 s up to so far above what nonlinearity
+/// allows.
+inline constexpr double kFarAboveByRule = 25.0;
 
 /// In single precision runs are lost from where the window has closed to these factors: where
 /// singular positions set the lower bound, and where the slowest mode does.

@@ -140,9 +140,15 @@ bool ReferenceSimulation::project(const Pass& last, int& factorizations) {
     if (!refine(rows, v_, partial_rate(), 2 / h * tolerance, factorizations)) return false;
     return !both || refine(rows, a_, curvature(), 4 / (h * h) * tolerance, factorizations);
   }
+  const auto take_away = [&](Vector& x, Vector rate) {  // Eqs. (6), (13), solved for what changes
+    const Vector along = times(last.rows, x);
+    for (int k = 0; k < m_; ++k) rate[k] = -(along[k] + rate[k]);
+    const Vector change = solve(last.rows, Vector(n_, Real{0}), rate).x;
+    for (int i = 0; i < n_; ++i) x[i] += change[i];
+  };
   const Vector final_q = std::exchange(q_, last.q);
-  v_ = solve(last.rows, weighted_mass_times(v_), negative(partial_rate())).x;  // Eqs. (6), (13)
-  if (both) a_ = solve(last.rows, weighted_mass_times(a_), negative(curvature())).x;
+  take_away(v_, partial_rate());
+  if (both) take_away(a_, curvature());
   q_ = final_q;
   return true;
 }

@@ -72,7 +72,16 @@ bool is_slow_everywhere(const Model& model, double smallest, double length) {
   return smallest_constraint_eigenvalue(model, q) < 2 * smallest;
 }
 
-/// beta = alpha dt^2/4 of the penalty form, kg/m^2.
+/// Whether passes converge like Newton's, with a tangent of each. The penalty form's do not in
+/// float, nor with a geometric stiffness, into which alpha Phi enters.
+bool is_newton(const StepSettings& settings) {
+  return settings.tangent == TangentReuse::none &&
+         (settings.scheme == Scheme::saddle_point ||
+          (settings.scheme == Scheme::penalty && !settings.geometric_stiffness &&
+           settings.precision == Precision::double_precision));
+}
+
+/// beta = alpha dt^2/4 of the penalty form with kept tangents or factors in float, kg/m^2.
 double automatic_beta(const Model& model, const StepSettings& settings, double smallest) {
   // The coarse tolerance of single precision leaves the multipliers one pass a step, which needs
   // more beta from longer steps on.
@@ -84,8 +93,7 @@ double automatic_beta(const Model& model, const StepSettings& settings, double s
   constexpr double kQuiet = 3e-9;  // of the length
   const double stable = kStable / smallest, least = least_constraint_diagonal(model);
   if (stable > measured &&
-      (rounding_noise(model, settings, stable * least) <= kQuiet * fastest.length ||
-       (!single && is_slow_everywhere(model, smallest, fastest.length)))) {
+      rounding_noise(model, settings, stable * least) <= kQuiet * fastest.length) {
     measured = stable;
   }
   const double turn = fastest.rate * settings.step;
@@ -119,19 +127,34 @@ double automatic_penalty(const Model& model, const StepSettings& settings,
   const auto slowest = [&] {
     return smallest ? *smallest : smallest_constraint_eigenvalue(model, model.initial_position());
   };
-  if (settings.scheme == Scheme::penalty) {
+  const bool is_penalty = settings.scheme == Scheme::penalty;
+  if (is_penalty && !is_newton(settings)) {
     return per_beta * automatic_beta(model, settings, slowest());
   }
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme == Scheme::multistep6) return per_beta * 1e7 / mean;
-  if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
+  if (!is_penalty && settings.scheme != Scheme::saddle_point)
+    return per_beta * 2e4 / mean;  // RATTLE
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
-  const double ratio = fastest_turning(model).rate * settings.step / kMeasuredTurn;
+  constexpr double kLeft = 1e14;
+  const Turning fastest = fastest_turning(model);
+  const double ratio = fastest.rate * settings.step / kMeasuredTurn;
   const double s_min = slowest();
-  const double measured = std::clamp(15 / (s_min * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
-  constexpr double kMost = 1e14;  // its inverse is a hundred times what pivots round by
+  // In the penalty form light parts, which make the mean large, are no measure: their own masses
+  // may be rounded in T as long as something is left of them.
+  const double row = is_penalty ? least_constraint_diagonal(model) : mean;
+  const double most = std::max(1e10 / mean, std::min(1e10 / row, kLeft / mean));
+  // No more than it takes: lambda has the rounding of Phi times alpha.
+  const double least = (is_penalty ? 1e6 : 2.5e7) / mean;
+  const double measured = std::clamp(15 / (s_min * ratio * ratio), least, most);
   const double stable = kStable / s_min;
-  return per_beta * (stable <= kMost / mean ? std::max(measured, stable) : measured);
+  if (stable <= measured) return per_beta * measured;
+  // From kRounded on T rounds M of heavy parts, which singular positions amplify.
+  constexpr double kRounded = 1e12;
+  const double reached = (is_penalty ? 3e13 : 1e14) / mean;
+  const bool is_in_reach = stable <= reached && (!is_penalty || stable <= kRounded / row ||
+                                                 is_slow_everywhere(model, s_min, fastest.length));
+  return per_beta * (is_in_reach ? stable : measured);
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
@@ -167,20 +190,20 @@ bool has_stiff_damper(const Model& model, double step) {
 }  // namespace
 
 double automatic_tolerance(const Model& model, const StepSettings& settings) {
+  constexpr double kLinear = 5e5;  // beta s_mean of the penalty form, from which it hardly shows
   const double step = settings.step;
   const double length = std::min(fastest_turning(model).length, 1.0);
-  // The saddle-point form converges quadratically, with a tangent of every pass: what it leaves is
-  // far below the last |Delta q|. But a stiff damper makes even that a force.
-  const bool is_quadratic = settings.scheme == Scheme::saddle_point &&
-                            settings.tangent == TangentReuse::none &&
-                            !has_stiff_damper(model, step);
+  const double stiffness = model.constraints() == 0 ? 0.0
+                                                    : settings.penalty * step * step / 4 *
+                                                          mean_constraint_eigenvalue(model);
+  // Newton converges quadratically: what it leaves is far below the last |Delta q|. But a small
+  // penalty factor makes that linear, and a stiff damper makes even little a force.
+  const bool is_quadratic = is_newton(settings) && !has_stiff_damper(model, step) &&
+                            (settings.scheme == Scheme::saddle_point || stiffness >= kLinear);
   const double of_paper = step / 1.25e-3;
   const double wanted =
       length *
       std::min(is_quadratic ? 1e-8 * std::pow(of_paper, 2) : 1e-9 * std::pow(of_paper, 4), 1e-6);
-  const double stiffness = model.constraints() == 0 ? 0.0
-                                                    : settings.penalty * step * step / 4 *
-                                                          mean_constraint_eigenvalue(model);
   return std::max({wanted, 10 * rounding_noise(model, settings, stiffness),
                    10 * unit_roundoff(settings.precision) * largest_coordinate(model)});
 }

@@ -52,20 +52,29 @@ class Planted final : public Simulation {
       q_ += delta;
       v_ += 2 / settings_.step * delta;
       a_ += delta / scale_;
-      evaluate_constraints();
-      if (kMistake != Mistake::lambda_first) lambda_ += settings_.penalty * Phi_;
       if (delta.lpNorm<Eigen::Infinity>() <= settings_.tolerance) {
         outcome.status = StepStatus::converged;
       }
-    }
-    if (settings_.projections != Projections::none) v_ = factors_.solve(M_ * v_);
-    if (settings_.projections == Projections::both) {
-      Vector curvature(m_);
-      constraint_curvature(model_, 0.0, values(q_), values(v_), {curvature.data(), size(m_)});
-      if (kMistake == Mistake::no_curvature) curvature.setZero();
-      a_ = factors_.solve(M_ * a_ - scale_ * settings_.penalty * Phi_q_.transpose() * curvature);
+      const bool is_last =
+          outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
+      if (is_last) project();
+      evaluate_constraints();
+      if (kMistake != Mistake::lambda_first) lambda_ += settings_.penalty * Phi_;
     }
     return outcome;
+  }
+  void project() {
+    if (settings_.projections == Projections::none) return;
+    const auto take_away = [&](Vector& x, const Vector& rate) {
+      x -= scale_ * settings_.penalty * factors_.solve(Phi_q_.transpose() * (Phi_q_ * x + rate));
+    };
+    Vector rate = Vector::Zero(m_);
+    take_away(v_, rate);
+    if (settings_.projections == Projections::velocity) return;
+    if (kMistake != Mistake::no_curvature) {
+      constraint_curvature(model_, 0.0, values(q_), values(v_), {rate.data(), size(m_)});
+    }
+    take_away(a_, rate);
   }
 
   bool do_show_first_pass(FirstPass& pass) override {
