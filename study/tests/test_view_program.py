@@ -69,7 +69,7 @@ def test_a_scene_of_a_short_driver_table_is_shown_as_long_as_it_is_known(tmp_pat
 
 
 def test_a_scene_is_shown_in_the_form_of_the_step_that_it_needs(tmp_path):
-    done = view(tmp_path, "chain:500", "--duration", "0.025", program=PROGRAM)
+    done = view(tmp_path, "scissors:1200", "--duration", "0.025", program=PROGRAM)
     assert done.returncode == 0 and "saddle-point form" in done.stdout, done.stderr
 
 
