@@ -69,7 +69,11 @@ def test_a_scene_of_a_short_driver_table_is_shown_as_long_as_it_is_known(tmp_pat
 
 
 def test_a_scene_is_shown_in_the_form_of_the_step_that_it_needs(tmp_path):
-    done = view(tmp_path, "scissors:1200", "--duration", "0.025", program=PROGRAM)
+    points = [("A", 0, 0), ("B", 1, 1e-8), ("C", 2, 0), ("D", 3, 1e-8)]  # nearly in line: singular
+    (tmp_path / "level.json").write_text(json.dumps({
+        "points": [{"name": name, "position": [x, y], "fixed": name in "AD"} for name, x, y in points],
+        "rods": [{"between": list(ends), "mass": 1} for ends in ("AB", "BC", "CD")]}))
+    done = view(tmp_path, "level.json", "--duration", "0.025", program=PROGRAM)
     assert done.returncode == 0 and "saddle-point form" in done.stdout, done.stderr
 
 

@@ -151,7 +151,7 @@ double automatic_penalty(const Model& model, const StepSettings& settings,
   if (stable <= measured) return per_beta * measured;
   // From kRounded on T rounds M of heavy parts, which singular positions amplify.
   constexpr double kRounded = 1e12;
-  const double reached = (is_penalty ? 3e13 : 1e14) / mean;
+  const double reached = (is_penalty ? 6e13 : 1e14) / mean;
   const bool is_in_reach = stable <= reached && (!is_penalty || stable <= kRounded / row ||
                                                  is_slow_everywhere(model, s_min, fastest.length));
   return per_beta * (is_in_reach ? stable : measured);

@@ -18,7 +18,7 @@ namespace mbs {
 /// point form, and most 1e10. Light parts make s_mean large: in the penalty form, where their own
 /// masses may be rounded, most / s_mean is up to 1e10 / s_row, but at most 1e14 / s_mean. And beta
 /// is at least 2 / s_min, as a step of one pass is stable from beta s_min = 1 on, if that is at
-/// most 1e14 / s_mean (3e13 in the penalty form, and from 1e12 / s_row on only if the mode is as
+/// most 1e14 / s_mean (6e13 in the penalty form, and from 1e12 / s_row on only if the mode is as
 /// slow everywhere). With factors in single precision the saddle-point form has 1e6 / s_mean, since
 /// eps must be above their rounding. RATTLE: 2e4 / s_mean: a smaller eps does not survive the poles
 /// of the multipliers at singular positions; the multistep method, which does not pass them anyway,
