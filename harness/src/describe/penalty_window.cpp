@@ -45,7 +45,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
     smallest = std::numeric_limits<double>::infinity();  // it says nothing there
   }
   const double mean = mean_constraint_eigenvalue(model);
-  const double unit = unit_roundoff(single ? settings.precision : Precision::double_precision);
+  const double unit = unit_roundoff(settings.precision);
   const auto bounds_at = [&](double turned) {
     return Bounds{.slowest = single ? kOnePass / (smallest * std::pow(turned, 4))
                                     : kSlowestMode / (smallest * turned),

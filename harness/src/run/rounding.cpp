@@ -14,10 +14,10 @@ namespace mbs {
 
 namespace {
 
-/// Largest |entry| of each row of the Jacobian.
-std::vector<double> gradients(const Model& model, const std::vector<JacobianEntry>& entries) {
+/// Largest |entry| of each row of the Jacobian at `state`.
+std::vector<double> gradients(const Model& model, const State& state) {
   std::vector<double> result(static_cast<std::size_t>(model.constraints()), 0.0);
-  for (const JacobianEntry& entry : entries) {
+  for (const JacobianEntry& entry : jacobian(model, state.t, state.q)) {
     double& largest = result[static_cast<std::size_t>(entry.row)];
     largest = std::max(largest, std::abs(entry.value));
   }
@@ -27,7 +27,7 @@ std::vector<double> gradients(const Model& model, const std::vector<JacobianEntr
 }  // namespace
 
 double rounding_of_penalty_forces(const Model& model, double penalty, const State& state) {
-  const auto gradient = gradients(model, jacobian(model, state.t, state.q));
+  const std::vector<double> gradient = gradients(model, state);
   std::vector<double> applied(state.q.size());
   applied_force(model, state.t, state.q, state.v, applied);
   double coordinate = 0.0, rounding = 0.0, force = 0.0;

@@ -133,15 +133,15 @@ double automatic_penalty(const Model& model, const StepSettings& settings,
   }
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme == Scheme::multistep6) return per_beta * 1e7 / mean;
-  if (!is_penalty && settings.scheme != Scheme::saddle_point)
-    return per_beta * 2e4 / mean;  // RATTLE
+  const bool is_rattle = !is_penalty && settings.scheme != Scheme::saddle_point;
+  if (is_rattle) return per_beta * 2e4 / mean;
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
-  constexpr double kLeft = 1e14;
   const Turning fastest = fastest_turning(model);
   const double ratio = fastest.rate * settings.step / kMeasuredTurn;
   const double s_min = slowest();
   // In the penalty form light parts, which make the mean large, are no measure: their own masses
   // may be rounded in T as long as something is left of them.
+  constexpr double kLeft = 1e14;
   const double row = is_penalty ? least_constraint_diagonal(model) : mean;
   const double most = std::max(1e10 / mean, std::min(1e10 / row, kLeft / mean));
   // No more than it takes: lambda has the rounding of Phi times alpha.

@@ -27,11 +27,10 @@ namespace mbs {
 /// without constraints.
 ///
 /// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean
-/// and s_row the least above 0 of its
-/// diagonal with the diagonal of M (m^2/kg); omega is fastest_turning(). The multiplier
-/// iteration contracts by 1 / (1 + beta s), and the shorter a step, the nearer to a singular
-/// position the worst of them ends, where s is as (omega dt)^2. For the step, scheme, tangent and
-/// precision of `settings`; `smallest`: s_min, where it is known already.
+/// and s_row the least above 0 of its diagonal with the diagonal of M (m^2/kg); omega is
+/// fastest_turning(). The multiplier iteration contracts by 1 / (1 + beta s), and the shorter a
+/// step, the nearer to a singular position the worst of them ends, where s is as (omega dt)^2. For
+/// the step, scheme, tangent and precision of `settings`; `smallest`: s_min, where it is known.
 double automatic_penalty(const Model& model, const StepSettings& settings,
                          std::optional<double> smallest = std::nullopt);
 
