@@ -1,13 +1,11 @@
 # Rows of maps, windows and whole runs from their records.
-import math
-
 import pandas
 
 from analysis.core.outcomes import of_run
 
 FIGURES = ("failed_at", "position_error_max", "energy_drift_max", "passes_per_step", "steps_at_limit")
-MUST_HOLD = {  # scheme: up to which N, position error (m), passes a step, steps at the pass limit
-    "penalty": (200, 5e-3, 3.0, math.inf), "saddle-point": (2000, 2e-3, 2.2, 0)}
+MUST_HOLD = {"penalty", "saddle-point"}  # the forms of the trapezoidal rule, up to this size:
+LARGEST, ERROR, PASSES, AT_LIMIT = 2000, 2e-3, 2.2, 0  # N; m; passes a step; steps at the pass limit
 
 
 def build(records, view):
@@ -45,8 +43,7 @@ def _loops(record):
 
 def holds(row):
     """"yes", "no", or "" where nothing is asked or nothing was run."""
-    largest, error, passes, at_limit = MUST_HOLD.get(row["scheme"], (0, 0, 0, 0))
-    if row["loops"] > largest or row["status"] == "dropped":
+    if row["scheme"] not in MUST_HOLD or row["loops"] > LARGEST or row["status"] == "dropped":
         return ""
-    kept = row["status"] == "ok" and row["position_error_max"] < error and row["passes_per_step"] <= passes
-    return "yes" if kept and row["steps_at_limit"] <= at_limit else "no"
+    kept = row["status"] == "ok" and row["position_error_max"] < ERROR and row["passes_per_step"] <= PASSES
+    return "yes" if kept and row["steps_at_limit"] <= AT_LIMIT else "no"

@@ -103,7 +103,7 @@ ROW = {"scheme": "saddle-point", "loops": 2000, "status": "ok", "position_error_
     ({}, "yes"), ({"loops": 3000}, ""), ({"scheme": "rattle"}, ""), ({"status": "degraded"}, "no"),
     ({"position_error_max": 3e-3}, "no"), ({"position_error_max": None, "status": "timeout"}, "no"),
     ({"passes_per_step": 2.3}, "no"), ({"steps_at_limit": 1}, "no"), ({"status": "dropped"}, ""),
-    ({"scheme": "penalty", "loops": 200, "steps_at_limit": 9, "passes_per_step": 3.0}, "yes")])
+    ({"scheme": "penalty"}, "yes"), ({"scheme": "penalty", "steps_at_limit": 1}, "no")])
 def test_what_whole_runs_must_hold(change, verdict):
     assert tables.holds(ROW | change) == verdict
 

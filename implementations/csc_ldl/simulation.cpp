@@ -84,7 +84,7 @@ StepOutcome LdlSimulation::do_step() {
         outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
     if (saddle_point_) update_multipliers(bottom_, 4 / (dt_ * dt_));  // what came with Eq. (12)
     if (is_last && settings_.projections != Projections::none) project();
-    evaluate_constraints();  // at the new q': for lambda and the next pass
+    if (!saddle_point_ || !is_last) evaluate_constraints();  // at the new q'
     if (!saddle_point_) update_multipliers(constraints_.Phi, alpha_);  // Eq. (1)
   }
   return outcome;

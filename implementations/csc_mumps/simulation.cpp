@@ -86,9 +86,11 @@ void CscMumpsSimulation::newton_pass(StepOutcome& outcome) {
   take_multipliers();
   const bool is_last = converged || outcome.passes == settings_.max_passes;
   if (is_last && !project()) return;
-  phases_.enter(Phase::evaluation);
-  assembly_.evaluate_constraints(q_.data());
-  phases_.enter(Phase::other);
+  if (!is_last || settings_.scheme == Scheme::penalty) {
+    phases_.enter(Phase::evaluation);
+    assembly_.evaluate_constraints(q_.data());
+    phases_.enter(Phase::other);
+  }
   update_multipliers();
   outcome.status = converged ? StepStatus::converged : StepStatus::pass_limit;
 }

@@ -74,7 +74,9 @@ StepOutcome CscUmfpack<D, System>::do_step() {
     if (correct()) outcome.status = StepStatus::converged;
     last = outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
     if (last) project();
-    correct_position();
+    for (int i = 0; i < n_; ++i) q_[i] += delta_[i];
+    if (!last || settings_.scheme == Scheme::penalty) evaluate_constraints();
+    system_.update_multipliers(Phi_.data(), delta_.data(), lambda_.data());
   }
   phases_.enter(Phase::other);
   return outcome;
@@ -98,8 +100,7 @@ void CscUmfpack<D, System>::predict() {
     v[i] = (2.0 / h) * difference - v[i];                           // Eq. (2)
     q[i] = q_new;
   }
-  phases_.enter(Phase::evaluation);
-  jacobian_.evaluate(q, Phi_.data());
+  evaluate_constraints();
 }
 
 template <int D, template <int> class System>
@@ -147,11 +148,9 @@ void CscUmfpack<D, System>::add_projection(std::vector<double>& x) {
 }
 
 template <int D, template <int> class System>
-void CscUmfpack<D, System>::correct_position() {
+void CscUmfpack<D, System>::evaluate_constraints() {
   phases_.enter(Phase::evaluation);
-  for (int i = 0; i < n_; ++i) q_[i] += delta_[i];
   jacobian_.evaluate(q_.data(), Phi_.data());
-  system_.update_multipliers(Phi_.data(), delta_.data(), lambda_.data());
 }
 
 template class CscUmfpack<2, PenaltySystem>;

@@ -35,8 +35,8 @@ class CscUmfpack final : public Simulation {
   void project();
   /// x (n) += what projects it, from its rates_.
   void add_projection(std::vector<double>& x);
-  /// Corrects q; Phi, Phi_q and lambda there.
-  void correct_position();
+  /// Phi and Phi_q at q.
+  void evaluate_constraints();
 
   const StepSettings settings_;
   const int n_;

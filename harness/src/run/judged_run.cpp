@@ -296,12 +296,8 @@ std::string JudgedRun::beyond_estimates() const {
   }
   const double local_allowed = AccurateBounds{}.local_error * judge_.length();
   if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
-  // Light parts are moved by what the penalty form's projections leave.
-  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step{}",
-                     *summary_.local_error_sum, local_allowed,
-                     settings_.step.scheme == Scheme::penalty
-                         ? ", or with light parts --scheme saddle-point"
-                         : "");
+  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step",
+                     *summary_.local_error_sum, local_allowed);
 }
 
 RunSummary JudgedRun::finish() {

@@ -137,7 +137,7 @@ double automatic_penalty(const Model& model, const StepSettings& settings,
   if (is_rattle) return per_beta * 2e4 / mean;
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
   const Turning fastest = fastest_turning(model);
-  const double ratio = fastest.rate * settings.step / kMeasuredTurn;
+  const double ratio = fastest.rate > 0 ? fastest.rate * settings.step / kMeasuredTurn : 1.0;
   const double s_min = slowest();
   // In the penalty form light parts, which make the mean large, are no measure: their own masses
   // may be rounded in T as long as something is left of them.
