@@ -1,4 +1,6 @@
 # What the page says besides its maps: outcomes counted, valleys, where the automatic factor misses one.
+from analysis.stability import tables as rules
+
 ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 
 
@@ -16,7 +18,8 @@ def context(tables, view):
             "least": scaled.min(), "most": scaled.max(), "dropped": len(tables["maps"]) - len(table),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
             "inaccurate": table[(table.status == "ok") & ~(table.position_error_max <= ACCURATE)].to_dict("records"),  # there must be none
-            "whole": whole.to_dict("records"),
+            "whole": whole.to_dict("records"), "promised": sorted(rules.MUST_HOLD),
+            "must": {"largest": rules.LARGEST, "error": rules.ERROR, "passes": rules.PASSES},
             "sizes": [(*key, [round(one) for one in rows.loops])
                       for key, rows in whole.groupby(["scheme", "implementation"], sort=False)]}
 

@@ -165,8 +165,8 @@ TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
       EXPECT_GT(*summary.failed_at, 0.0);
       const double judged = 1.25e-3 * static_cast<double>(summary.steps);
       EXPECT_LE(*summary.failed_at, judged + 1e-9);
-      EXPECT_GT(*summary.failed_at,
-                judged - 2 * 1.25e-3 * static_cast<double>(judge_interval(scene, settings)));
+      EXPECT_GT(*summary.failed_at,  // eight states are judged together
+                judged - 9 * 1.25e-3 * static_cast<double>(judge_interval(scene, settings)));
     }
   }
 }

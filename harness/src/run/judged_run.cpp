@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <span>
 #include <utility>
 
 #include "printable.hpp"
@@ -18,6 +19,16 @@ namespace {
 
 bool has_high_order(Scheme scheme) {
   return scheme == Scheme::rattle4 || scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
+}
+
+/// How many states are judged together. Judging a small one takes less time than bringing code and
+/// data into the caches, out of which the steps in between have pushed them. Who looks at each step
+/// is not to see many that are lost.
+std::size_t judged_together(const Scene& scene, const RunSettings& settings, bool is_observed) {
+  constexpr int kMost = 8, kVariables = 1024;
+  if (is_observed || settings.half_step || settings.judge_every) return 1;
+  const int fitting = kVariables / std::max(1, scene.model.variables());
+  return static_cast<std::size_t>(std::clamp(fitting, 1, kMost));
 }
 
 }  // namespace
@@ -32,7 +43,8 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       next_judged_(judged_after(0)),
       next_look_(steps_ + 1),
       state_(std::move(start)),
-      before_(state_),
+      samples_(judged_together(scene, settings, observer_ != nullptr),
+               Sample{0, state_, state_}),
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
@@ -77,14 +89,18 @@ void JudgedRun::take(const StepOutcome& outcome) {
   count(outcome);
   const long step = summary_.steps;
   if (outcome.status == StepStatus::factorization_failed) {
+    judge_samples();
+    if (is_over_) return;
     const std::string why = "the tangent matrix could not be factorized";
-    if (!locate_loss(why)) lose(RunStatus::diverged, why + hint(), time(step));
+    if (!locate_loss(why, step)) lose(RunStatus::diverged, why + hint(), time(step));
     return;
   }
   if (half_) half_->advance();
   const bool is_judged = step == next_judged_;
   if (is_judged) {
-    judge_present();
+    samples_[waiting_].step = step;
+    copy(samples_[waiting_++].after);
+    if (waiting_ == samples_.size() || step == steps_) judge_samples();
     if (is_over_) return;
     next_judged_ = judged_after(step);
   }
@@ -93,16 +109,14 @@ void JudgedRun::take(const StepOutcome& outcome) {
   const bool is_looked_at =
       watch_.is_needed() && (step >= next_look_ || step == steps_ ||
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
-  State& copy = is_before ? before_ : state_;
-  const bool is_for_judge = is_before || (is_looked_at && !is_judged);
-  if (is_for_judge) {
-    copying_.begin();
-    access_.get_state(copy);
-    copying_.end();
+  State& now = is_before ? samples_[waiting_].before : state_;
+  if (is_before || (is_looked_at && !is_judged)) {
+    copy(now);
   } else if ((observer_ || half_) && !is_judged) {
-    access_.get_state(copy);
+    access_.get_state(now);
   }
-  const State& present = is_judged ? good_.state : copy;
+  const State& last_judged = waiting_ == 0 ? good_.state : samples_[waiting_ - 1].after;
+  const State& present = is_judged ? last_judged : now;
   if (is_looked_at) look(present);
   if (is_over_) return;
   if (half_) half_->compare(present);
@@ -110,29 +124,39 @@ void JudgedRun::take(const StepOutcome& outcome) {
   if (step == steps_) conclude();
 }
 
-void JudgedRun::judge_present() {
+void JudgedRun::copy(State& state) {
+  copying_.begin();
+  access_.get_state(state);
+  copying_.end();
+}
+
+void JudgedRun::judge_samples() {
   judging_.begin();
   aside_ = 0.0;
-  const long step = summary_.steps;
-  access_.get_state(state_);
-  std::string lost = judge_.judge(time(step), state_);
+  for (std::size_t i = 0; i < waiting_ && !is_over_; ++i) judge(samples_[i]);
+  waiting_ = 0;
+  if (!is_over_) judging_.end(aside_);
+}
+
+void JudgedRun::judge(Sample& sample) {
+  const long step = sample.step;
+  std::string lost = judge_.judge(time(step), sample.after);
   has_figures_ = true;
   if (!lost.empty()) {
     const auto begin = SampledTime::Clock::now();
-    if (!locate_loss(lost)) {
+    if (!locate_loss(lost, step)) {
       // Where another simulation did the steps again, this state itself is still to be judged.
-      lost = judge_.judge(time(step), state_);
+      lost = judge_.judge(time(step), sample.after);
       if (!lost.empty()) lose(judge_, lost, step);
     }
-    aside_ = SampledTime::since(begin);
+    aside_ += SampledTime::since(begin);
   }
   if (is_over_) return;
-  if (adds_local_errors_) add_local_errors();
-  balance_energy();
+  if (adds_local_errors_) add_local_errors(sample);
+  balance_energy(sample);
   good_.step = step;
-  std::swap(good_.state, state_);
+  std::swap(good_.state, sample.after);
   good_.figures = judge_.figures();
-  judging_.end(aside_);
 }
 
 /// Whether the motion went on as another assembly.
@@ -141,6 +165,8 @@ void JudgedRun::look(const State& present) {
   const long step = summary_.steps;
   const std::string jump = watch_.look(time(step), present);
   if (!jump.empty()) {
+    judge_samples();
+    if (is_over_) return;
     const long first = first_across(step);
     std::string reason = jump;
     if (watch_.step_needed()) {
@@ -180,31 +206,32 @@ long JudgedRun::looked_after(const State& present) const {
 
 /// About every 256 steps, and by one in four of those that are judged: it takes as long as all
 /// else.
-void JudgedRun::balance_energy() {
+void JudgedRun::balance_energy(const Sample& sample) {
   const long every = std::clamp(256L / interval_, 1L, 4L);
-  const long step = summary_.steps;
+  const long step = sample.step;
   if (!balance_ || (judgements_++ % every != every / 2 && step != steps_)) return;
-  const auto [excess, work] = balance_->over(before_, state_, time(step), settings_.step.step);
+  const auto [excess, work] =
+      balance_->over(sample.before, sample.after, time(step), settings_.step.step);
   judge_.add_balance(excess, work, step - balanced_);
   balanced_ = step;
 }
 
 /// What the last step left stands for those since the last judged one.
-void JudgedRun::add_local_errors() {
-  const long steps = summary_.steps - good_.step;
+void JudgedRun::add_local_errors(const Sample& sample) {
+  const long steps = sample.step - good_.step;
   const double step = settings_.step.step;
-  const std::vector<double>& v = judge_.velocity(state_);
+  const std::vector<double>& v = judge_.velocity(sample.after);
   off_.resize(v.size());
   if (local_half_) {
-    off_ = local_half_->error(before_, state_);
+    off_ = local_half_->error(sample.before, sample.after);
   } else {  // the trapezoidal rule
     for (std::size_t i = 0; i < off_.size(); ++i) {
-      off_[i] = step * step / 12 * (state_.a[i] - before_.a[i]);
+      off_[i] = step * step / 12 * (sample.after.a[i] - sample.before.a[i]);
     }
   }
   const double speed = local_errors_.add(off_, v, step, steps);
   judge_.add_time(static_cast<double>(steps) * step, speed);
-  add_speed_error();
+  add_speed_error(sample);
 }
 
 std::string JudgedRun::hint() const {
@@ -235,6 +262,14 @@ void JudgedRun::take_exception() {
   } catch (const UsageError&) {
     throw;
   } catch (const std::exception& error) {
+    // Without the simulation, which may be gone.
+    for (const Sample& sample : std::span(samples_).first(std::exchange(waiting_, 0))) {
+      const std::string lost = judge_.judge(time(sample.step), sample.after);
+      has_figures_ = true;
+      if (lost.empty()) continue;
+      lose(judge_, lost, sample.step);
+      return;
+    }
     lose(RunStatus::diverged,
          fmt::format("the implementation threw: {}", printable(error.what(), 1000)),
          time(summary_.steps + 1));

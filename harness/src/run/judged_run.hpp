@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "run/branch_watch.hpp"
 #include "run/half_step_run.hpp"
@@ -53,6 +54,11 @@ class JudgedRun {
   [[nodiscard]] RunSummary finish();
 
  private:
+  /// A step that is to be judged, and the one before it.
+  struct Sample {
+    long step;
+    State before, after;
+  };
   /// The last step at which the solution was not lost.
   struct LastGood {
     long step;
@@ -63,19 +69,21 @@ class JudgedRun {
   [[nodiscard]] double time(long step) const;
   [[nodiscard]] long judged_after(long step) const;
   void count(const StepOutcome& outcome);
-  void judge_present();
+  void copy(State& state);
+  void judge_samples();
+  void judge(Sample& sample);
   void look(const State& present);
   [[nodiscard]] bool is_unusual(const StepOutcome& outcome) const;
   [[nodiscard]] long looked_after(const State& present) const;
   [[nodiscard]] long first_across(long step);
-  bool locate_loss(const std::string& reason);
+  bool locate_loss(const std::string& reason, long step);
   void lose(RunStatus status, std::string reason, std::optional<double> t);
   void lose(const Judge& judge, const std::string& reason, long step);
   /// What may be behind a loss with this scheme.
   [[nodiscard]] std::string hint() const;
-  void add_local_errors();
-  void add_speed_error();
-  void balance_energy();
+  void add_local_errors(const Sample& sample);
+  void add_speed_error(const Sample& sample);
+  void balance_energy(const Sample& sample);
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
 
@@ -88,8 +96,9 @@ class JudgedRun {
   long next_judged_;  // step
   long next_look_;    // step; beyond the last where there is nothing to look at
   long last_look_ = 0;
-  State state_;   // the last one that was looked at
-  State before_;  // one step before the one that is judged next
+  State state_;  // the last one that was looked at
+  std::vector<Sample> samples_;
+  std::size_t waiting_ = 0;  // of these: copied, to be judged together
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;

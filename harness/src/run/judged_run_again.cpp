@@ -15,12 +15,11 @@ bool is_trapezoidal(Scheme scheme) {
 
 }  // namespace
 
-/// The solution was found lost, for `reason`. Does the steps since the last good one again and
-/// judges each, so that the summary has the first that was lost. False if none of them was: with
-/// more states the judge knows better what its figures are small against. Its judgement counts
-/// then.
-bool JudgedRun::locate_loss(const std::string& reason) {
-  const long step = summary_.steps;
+/// The solution was found lost at `step`, for `reason`. Does the steps since the last good one
+/// again and judges each, so that the summary has the first that was lost. False if none of them
+/// was: with more states the judge knows better what its figures are small against. Its judgement
+/// counts then.
+bool JudgedRun::locate_loss(const std::string& reason, long step) {
   if (good_.step + 1 == step) {
     lose(judge_, reason, step);
     return true;
@@ -42,6 +41,7 @@ bool JudgedRun::locate_loss(const std::string& reason) {
     return true;
   }
   judge_ = judge;
+  for (long i = step; i < summary_.steps; ++i) simulation.step();  // to where the run is
   return false;
 }
 
@@ -63,9 +63,9 @@ long JudgedRun::first_across(long step) {
 
 /// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
 /// steps. Not by those that cannot have left enough.
-void JudgedRun::add_speed_error() {
+void JudgedRun::add_speed_error(const Sample& sample) {
   constexpr long kMost = 1024, kTimes = 16;
-  const long step = summary_.steps, since = step - done_again_;
+  const long step = sample.step, since = step - done_again_;
   if (!is_trapezoidal(settings_.step.scheme)) return;
   if (step != steps_ && since < std::min(kMost, steps_ / kTimes - interval_)) return;
   // Steps that were not projected as the others are not comparable.
@@ -80,12 +80,12 @@ void JudgedRun::add_speed_error() {
   const auto begin = Clock::now();
   if (!again_) {
     again_.emplace(access_.create, *access_.model, settings_.step,
-                   static_cast<double>(summary_.passes) / static_cast<double>(step));
+                   static_cast<double>(summary_.passes) / static_cast<double>(summary_.steps));
   }
   const auto ready = Clock::now();  // its set-up is no more judging than that of the run is a step
-  local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
-                          settings_.step.step, since,
-                          balance_ ? balance_->braked(time(step), state_) : 0.0);
+  local_errors_.add_speed(again_->error(sample.before, sample.after, negligible),
+                          judge_.velocity(sample.after), settings_.step.step, since,
+                          balance_ ? balance_->braked(time(step), sample.after) : 0.0);
   done_again_ = step;
   doing_again_ += SampledTime::since(ready);
   aside_ += SampledTime::since(begin);

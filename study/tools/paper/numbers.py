@@ -258,6 +258,9 @@ def _window(known):
     rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & (rows.status == "ok")]
     largest = rows.nlargest(1, "loops")
     found = each("stability/windows", largest, **{name: number(largest[name].max()) for name in ("loops", "lower", "upper")})
+    tried = maps[(maps.penalty_asked != "auto") & (maps.precision == "double") & (maps.scheme == "penalty") & (maps.status != "dropped")]
+    good = (tried.status == "ok").groupby([tried.loops, tried.step]).sum()
+    found |= each("stability/maps", tried, tried=tried.penalty_asked.groupby([tried.loops, tried.step]).nunique().max(), good_least=good.min(), good_most=good.max())
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
     for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
         mine = automatic[automatic.scheme == scheme]
