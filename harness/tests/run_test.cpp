@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "check/reference_run.hpp"
@@ -178,13 +179,54 @@ TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
   settings.judge_every = 1;
   const RunSummary every = run(scene, control("reference"), settings);
   ASSERT_NE(every.status, RunStatus::ok);
-  for (const int judge_every : {7, 100, 100'000}) {
-    settings.judge_every = judge_every;
+  for (const int judge_every : {0, 7, 100, 100'000}) {  // 0: as the program chooses
+    settings.judge_every = judge_every > 0 ? std::optional(judge_every) : std::nullopt;
     const RunSummary seldom = run(scene, control("reference"), settings);
     EXPECT_EQ(seldom.status, every.status) << judge_every;
     EXPECT_EQ(seldom.failed_at, every.failed_at) << judge_every;
     EXPECT_EQ(seldom.reason, every.reason) << judge_every;
   }
+}
+
+/// A point of 1 kg that hardly moves, with more energy than at the start, but for one step in ten:
+/// then it is 5 m lower, and as fast as it has to be.
+class Dipping final : public Simulation {
+ public:
+  static inline double last = 0.0;  // s, the end of the last step
+  using Simulation::Simulation;
+
+ protected:
+  void do_set_state(const State& state) override { state_ = state; }
+  StepOutcome do_step() override {
+    last = time();
+    const bool is_low = std::lround(last / 1.25e-3) % 10 == 5;
+    state_.q[1] = is_low ? -5.0 : 0.0;
+    state_.v[0] = is_low ? std::sqrt(2 * 10 * 5.0) : 0.5;
+    return {StepStatus::converged, 1};
+  }
+  void do_get_state(State& state) const override { state = state_; }
+
+ private:
+  State state_;
+};
+
+TEST(Run, GoesOnFromWhereItIsAfterAFalseAlarm) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = {0.0, -10.0};
+  data.initial_velocity = {0.1, 0.0};
+  const Scene scene{"dips", Model(std::move(data)), {}, {}};
+  Variant variant = control("reference");
+  variant.create = [](const Model& model, const StepSettings& settings) -> std::unique_ptr<Simulation> {
+    return std::make_unique<Dipping>(model, settings);
+  };
+  RunSettings settings = settings_for(scene, 10.0);
+  settings.step.tolerance = 1e-15;  // no step is done again
+  const RunSummary summary = run(scene, variant, settings);
+  EXPECT_NE(summary.status, RunStatus::diverged) << summary.reason;
+  EXPECT_LT(summary.energy_drift_max.value(), 0.01);
+  EXPECT_NEAR(Dipping::last, 10.0, 1e-9);
 }
 
 TEST(Run, JudgesOneStepIn64To128OrThirtyTwoTimes) {

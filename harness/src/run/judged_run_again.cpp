@@ -1,6 +1,7 @@
 // Steps of a judged run that are done again: where its motion was lost, and what a step left.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "run/judged_run.hpp"
 
@@ -41,7 +42,7 @@ bool JudgedRun::locate_loss(const std::string& reason, long step) {
     return true;
   }
   judge_ = judge;
-  for (long i = step; i < summary_.steps; ++i) simulation.step();  // to where the run is
+  for (long i = step; i < summary_.steps; ++i) std::ignore = simulation.step();  // as far as the run
   return false;
 }
 
