@@ -42,7 +42,8 @@ bool JudgedRun::locate_loss(const std::string& reason, long step) {
     return true;
   }
   judge_ = judge;
-  for (long i = step; i < summary_.steps; ++i) std::ignore = simulation.step();  // as far as the run
+  // As far as the run has gone.
+  for (long i = step; i < summary_.steps; ++i) std::ignore = simulation.step();
   return false;
 }
 
