@@ -199,7 +199,7 @@ class Dipping final : public Simulation {
   void do_set_state(const State& state) override { state_ = state; }
   StepOutcome do_step() override {
     last = time();
-    const bool is_low = std::lround(last / 1.25e-3) % 10 == 5;
+    const bool is_low = std::lround(last / 1.25e-3) % 10 == 1;
     state_.q[1] = is_low ? -5.0 : 0.0;
     state_.v[0] = is_low ? std::sqrt(2 * 10 * 5.0) : 0.5;
     return {StepStatus::converged, 1};
