@@ -1,25 +1,26 @@
-# A rule to apply by hand: at most three cases in each form of the step, in two numbers that `mbs describe` prints.
-# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other; at the least cost.
+# A rule to apply by hand: at most four cases in each form of the step, in two numbers that `mbs describe` prints.
+# A form's mechanisms are parted at a limit of one number, each part once more at a limit of the other. The limits are those that cost least by
+# the times that the rule of rule.py predicts for all mechanisms: measured ones of few that fill much would leave them to chance.
 from itertools import permutations
 
 import numpy
 
-from analysis.core.gather import gather
-
-NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("saddle_dense", "rows")}
-SHOWN = ("per_column", "dense", "saddle_dense", "rows")
+NUMBERS = {"penalty": ("dense", "per_column"), "saddle-point": ("saddle_dense", "saddle_per_column")}
+SHOWN = ("dense", "per_column", "saddle_dense", "saddle_per_column")
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 
-def table(data, worth, unknown):
-    """A row a case. data: losses and costs of rule.py; worth: of the mean cost, that one more case must save; unknown: the cost of who has none."""
+def table(data, rests, rule, worth):
+    """A row a case. data, rule, rests: of rule.py, {family: the rule without its times}; worth: of the mean cost, that one more case must save."""
     for scheme, losses in data.losses.items():
+        features, weights = data.features.loc[losses.index], data.weights(losses.index)
         chosen = {}
-        for family, left in gather((data.family[scene], scene) for scene in losses.index).items():
-            for where, name in _cases(data.without(family), scheme, worth, unknown):
-                chosen |= dict.fromkeys(_inside(where, data.features.loc[left]), name)
-        for where, name in _cases(data, scheme, worth, unknown):
-            scenes = _inside(where, data.features.loc[losses.index])
+        for family, rest in rests.items():
+            left = features[[data.family[scene] == family for scene in features.index]]
+            for where, name in _cases(rest.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth):
+                chosen |= dict.fromkeys(_inside(where, left), name)
+        for where, name in _cases(rule.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth):
+            scenes = _inside(where, features)
             found = numpy.array([losses.loc[scene, chosen[scene]] for scene in scenes])
             known = found[~numpy.isnan(found)]
             limits = {f"{end}_{number}": value if numpy.isfinite(value) else None
@@ -42,43 +43,44 @@ def limit(values, costs):
     values, below = values[order], numpy.cumsum(costs[order], axis=0)
     total = below[-1]
     places = numpy.flatnonzero(values[1:] > values[:-1])
-    if not len(places):
-        return total.min(), numpy.inf, *[total.argmin()] * 2
     cost = below[places].min(axis=1) + (total - below[places]).min(axis=1)
-    best = places[cost.argmin()]
-    return cost.min(), _round(values[best], values[best + 1]), below[best].argmin(), (total - below[best]).argmin()
+    for at in numpy.argsort(cost, kind="stable"):
+        if (found := _round(*values[places[at]:places[at] + 2])) is not None:
+            return cost[at], found, below[places[at]].argmin(), (total - below[places[at]]).argmin()
+    return total.min(), numpy.inf, *[total.argmin()] * 2
 
 
 def _round(least, most):
-    """About the middle, in the fewest digits that part the two: least < it <= most."""
-    middles = (float(f"{(least * most) ** 0.5:.{digits}g}") for digits in range(1, 17))
-    return next((middle for middle in middles if least < middle <= most), most)
+    """About the middle, in the fewest digits that part the two: least < it <= most; None if two are not enough for that."""
+    middles = (float(f"{(least * most) ** 0.5:.{digits}g}") for digits in (1, 2))
+    return next((middle for middle in middles if least < middle <= most), None)
 
 
-def _cases(data, scheme, worth, unknown):
+def _cases(costs, features, worth):
     """[(where, library)]"""
-    costs = data.costs(scheme).fillna(unknown)
-    names, features = costs.columns, {number: data.features.loc[costs.index, number].to_numpy() for number in NUMBERS[scheme]}
-    costs = costs.to_numpy() * data.weights(costs.index)[:, None]
+    names, costs, values = costs.columns, costs.to_numpy(), {name: column.to_numpy() for name, column in features.items()}
+    tried = [_one(EVERYWHERE, costs, worth)]
+    for first, second in permutations(values):
+        known = sorted(set(values[first]))
+        for at in filter(None, (_round(*ends) for ends in zip(known, known[1:]))):
+            cost, cases = 0.0, []
+            for where, inside in zip(_parted(EVERYWHERE, first, at), (values[first] < at, values[first] >= at)):
+                split, *found = limit(values[second][inside], costs[inside])
+                ends = zip(_parted(where, second, found[0]), found[1:])
+                own = min(_one(where, costs[inside], worth), (split + 2 * worth, list(ends)), key=lambda one: one[0])
+                cost, cases = cost + own[0], cases + own[1]
+            tried.append((cost, cases))
+    return [(where, names[place]) for where, place in min(tried, key=lambda one: one[0])[1]]
+
+
+def _one(where, costs, worth):
     total = costs.sum(axis=0)
-    tried = [(total.min(), [(EVERYWHERE, total.argmin())])]
-    for first, second in permutations(NUMBERS[scheme]):
-        cost, *found = limit(features[first], costs)
-        tried.append((cost, _parted(EVERYWHERE, first, *found)))
-        values = sorted(set(features[first]))
-        for at in (_round(*ends) for ends in zip(values, values[1:])):
-            low = features[first] < at
-            parts = _parted(EVERYWHERE, first, at, costs[low].sum(axis=0).argmin(), costs[~low].sum(axis=0).argmin())
-            for side, inside in ((0, low), (1, ~low)):
-                cost, *found = limit(features[second][inside], costs[inside])
-                split = _parted(parts[side][0], second, *found)
-                tried.append((cost + costs[~inside].sum(axis=0).min(), [*parts[:side], *split, *parts[side + 1:]]))
-    return [(where, names[place]) for where, place in min(tried, key=lambda one: one[0] + worth * len(one[1]))[1]]
+    return total.min() + worth, [(where, total.argmin())]
 
 
-def _parted(where, number, at, below, above):
+def _parted(where, number, at):
     low, high = where[number]
-    return [(where | {number: (low, at)}, below), (where | {number: (at, high)}, above)]
+    return where | {number: (low, at)}, where | {number: (at, high)}
 
 
 def _inside(where, features):

@@ -1,11 +1,11 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
 # A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), σ their scatter in the fit, the
-# least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal
-# distribution, changes no choice there. That a dense and a sparse one are always compared was chosen so, too: without the families that fill
-# most, no dense one is worth it. A loss is of times taken in turns, else of the first look, else of the look at the next smaller machine of the
-# shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known: such scenes are counted, in
-# no mean, and say nothing of who is worth comparing.
+# least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution,
+# changes no choice there. That a dense one is always compared, and the sparse one that is predicted to be the fastest where a factorization takes
+# most operations, was chosen so, too: without the families that fill most, neither is worth it. A loss is of times taken in turns, else of the
+# first look, else of the look at the next smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is
+# none of these a loss is not known: such scenes are counted, in no mean, and say nothing of who is worth comparing.
 from collections import Counter
 from itertools import combinations
 
@@ -15,7 +15,7 @@ import pandas
 from analysis.families import by_hand
 from analysis.families.times import FEATURES, PASSES, TERMS, as_penalty, model, predicted
 
-CANDIDATES = {"penalty": 3, "saddle-point": 2}  # at most; five in all
+CANDIDATES = 3  # at most, in each form
 WORTH = 0.01    # of the mean cost, that one more candidate must save
 FAMILIES = 4     # at least, for a rule
 MUCH = 0.30      # a loss
@@ -23,6 +23,7 @@ FAILED = 3.0     # loss of who is of no use there: it disagrees, crashes, ...
 MOST = 3.0       # what a loss counts at most, where candidates are chosen
 UNKNOWN = MOST * (1 + 4 * MOST)  # the cost of who has no loss, where someone is chosen by one or two numbers
 USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
+WORK = {"penalty": "flops", "saddle-point": "saddle_flops"}  # of a factorization
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
 OWN, ALL = (0.025, 0.975), (0.05, 0.95)  # shares of measured over predicted times, of an implementation and of all in its form, that a range covers
@@ -38,8 +39,9 @@ def judged(tables, registry):
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
                               columns=["family", "scheme", "implementation", "ratio"])
-    rows = {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
-            "by_hand": by_hand.table(data, WORTH, UNKNOWN)}
+    whole = _Rule(data)
+    rows = {"steps": _steps(data, whole, ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
+            "by_hand": by_hand.table(data, rests, whole, WORTH)}
     return {name: pandas.DataFrame(found) for name, found in rows.items()}
 
 
@@ -155,9 +157,15 @@ class _Rule:
         name = min(times, key=lambda one: times[one] * self.caution[scheme, one])
         return name, times[name]
 
+    def costs(self, scheme, features):
+        """Of scenes and candidates, by predicted times."""
+        times = pandas.DataFrame({name: self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in self.candidates[scheme]},
+                                 index=features.index)
+        return cost(times.div(times.min(axis=1), axis=0) - 1)
+
     def _compared(self, data):
-        """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere. Dense ones and sparse ones
-        are both among them: another family may fill more than all that are known, or less."""
+        """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere. Among them are a dense one and
+        the sparse one that is predicted the fastest on the scene with most operations: another family may fill more than all that are known."""
         found = {}
         for scheme in data.losses:
             costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
@@ -165,13 +173,15 @@ class _Rule:
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
             times = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T
             costs = costs[names].to_numpy()
-            best = {}
-            kinds = [bool(data.registry.variants[name].get("dense")) for name in names]
-            for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)
-                           if {kinds[place] for place in some} == set(kinds)):
-                cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]
-                tried = ~numpy.isnan(cost)
-                best[places] = numpy.average(cost[tried], weights=weights[tried]) + WORTH * len(places) if tried.any() else numpy.inf
+            best, most = {}, features[WORK[scheme]].argmax()
+            dense = {place for place, name in enumerate(names) if data.registry.variants[name].get("dense")}
+            sparse = set(range(len(names))) - dense
+            asked = [dense, {min(sparse, key=lambda place: times[most, place])} if sparse else {}]
+            for places in (some for size in range(1, CANDIDATES + 1) for some in combinations(range(len(names)), size)
+                           if all(not kind or kind & {*some} for kind in asked)):
+                found_cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]
+                tried = ~numpy.isnan(found_cost)
+                best[places] = numpy.average(found_cost[tried], weights=weights[tried]) + WORTH * len(places) if tried.any() else numpy.inf
             found[scheme] = [names[place] for place in min(best, key=best.get)]
         return found
 
@@ -184,7 +194,8 @@ class _Data:
         complete = known[known[list(FEATURES)].notna().all(axis=1)]
         self.features, self.record = complete[list(dict.fromkeys((*FEATURES, *ALONE)))].astype(float), complete.record
         n, m, full_flops = self.features.n, self.features.m, lambda n: n * (n + 1) * (2 * n + 1) / 6
-        self.features["rows"] = n + m  # of the matrix of Eq. (12); then its operations in % of a dense solver's, as elimination.hpp has them
+        self.features["saddle_per_column"] = self.features.saddle_factor / (n + m)
+        # Operations in % of a dense solver's, as elimination.hpp has them.
         dense = n * m**2 + full_flops(m) + self.features.stiff * (full_flops(n) + n**2 * m)
         self.features["saddle_dense"] = 100 * self.features.saddle_flops / dense
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
@@ -214,9 +225,14 @@ class _Data:
         return numpy.array([1 / sizes[self.family[scene]] / len(sizes) for scene in scenes])
 
     def costs(self, scheme):
-        """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""
-        losses = self.losses[scheme].clip(upper=MOST)
-        return losses * (1 + 4 * losses)
+        """Of scenes and libraries."""
+        return cost(self.losses[scheme])
+
+
+def cost(losses):
+    """One loss of a fifth is worse than four of a twentieth."""
+    losses = losses.clip(upper=MOST)
+    return losses * (1 + 4 * losses)
 
 
 def shape(scene):

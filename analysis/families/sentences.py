@@ -6,11 +6,11 @@ from analysis.families import by_hand
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
-LIMITS = {"per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
-          "dense": ("a factorization takes {} % or more of a full one's operations", "a factorization takes less than {} % of a full one's operations"),
-          "saddle_dense": ("factorizing the saddle-point matrix takes {} % or more of a dense solver's operations",
-                           "factorizing the saddle-point matrix takes less than {} % of a dense solver's operations"),
-          "rows": ("n + m ≥ {}", "n + m < {}")}
+OPERATIONS = ("takes {} % or more of a dense solver's operations", "takes less than {} % of a dense solver's operations")
+COLUMNS = ("has {} or more non-zeros a column", "has less than {} non-zeros a column")
+LIMITS = {name: [f"{what} {end}" for end in ends] for name, what, ends in (
+    ("dense", "a factorization", OPERATIONS), ("per_column", "the factor", COLUMNS),
+    ("saddle_dense", "factorizing the saddle-point matrix", OPERATIONS), ("saddle_per_column", "its factor", COLUMNS))}
 
 
 def answers(tables, view):
@@ -25,7 +25,7 @@ def answers(tables, view):
               f"{len(real)} this run says who is fastest."}]
     if len(tables["held"]):
         held = summary(tables["held"])
-        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most three libraries in a form of the step, five in all, chooses one that takes {100 * held['mean_loss']:.1f} % longer "
+        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most three libraries in a form of the step chooses one that takes {100 * held['mean_loss']:.1f} % longer "
                       f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on"
                       f"{_unknown(held['unknown'], ' ({})')}; {100 * held['within']:.0f} % of "
                       "the step times are within 1.5 times of the predicted."})
@@ -78,13 +78,18 @@ def where(row, but=""):
 
 
 def _taken(rows):
-    """The cases of a form in words: first that which one limit parts from the others, or what is taken most."""
-    if len(rows) == rows.library.nunique() == 3:
-        first, second, third = sorted(rows.to_dict("records"), key=lambda row: where(row).count(" and "))
-        parting = next(name for name in by_hand.SHOWN if where(first, name) == "")
-        return f"{first['library']} if {where(first)}; else {second['library']} if {where(second, parting)}, else {third['library']}"
-    usual, *others = sorted((some for _, some in rows.groupby("library", sort=False)), key=lambda some: -some.scenes.sum())
-    return "; ".join([usual.library.iloc[0], *(f"but {some.library.iloc[0]} if {', or '.join(map(where, some.to_dict('records')))}" for some in others)])
+    """The cases of a form in words: those on either side of the limit that parts them all."""
+    for parting in by_hand.SHOWN:
+        below, above = (rows[rows[f"{end}_{parting}"].notna()] for end in ("below", "least"))
+        if len(below) and len(below) + len(above) == len(rows) and len({*below[f"below_{parting}"], *above[f"least_{parting}"]}) == 1:
+            under = LIMITS[parting][1].format(number(below[f"below_{parting}"].iloc[0]))
+            return f"if {under}, {_side(below, parting)}; otherwise {_side(above, parting)}"
+    return rows.library.iloc[0]
+
+
+def _side(rows, parting):
+    first, *others = sorted(rows.to_dict("records"), key=lambda row: " or more " in where(row, parting))
+    return f"{first['library']} if {where(first, parting)}, else {others[0]['library']}" if others else first["library"]
 
 
 def _lost(found, count):

@@ -136,6 +136,18 @@ def test_dense_and_sparse_ones_are_compared_though_known_families_hardly_ask_for
     assert set(held[held.family == "shell"].chosen) == {"one/b"}
 
 
+@pytest.mark.parametrize("per_flop, compared", [(1e-3, ["one/a", "one/b"]), (5e-3, ["one/a"])])
+def test_the_sparse_one_that_is_predicted_the_fastest_where_most_is_to_do_is_compared(per_flop, compared):
+    scenes = ["chain:10", "chain:20", "grid:10", "grid:20"]
+    data, found = object.__new__(rule._Data), object.__new__(rule._Rule)
+    data.registry, data.family = REGISTRY, {scene: scene.partition(":")[0] for scene in scenes}
+    data.features = pandas.DataFrame({"n": [10.0, 20.0, 10.0, 20.0], "flops": [10.0, 20.0, 1e3, 2e4]}, index=scenes)
+    data.losses = {"penalty": pandas.DataFrame({"one/a": [0.0, 0.0, 0.0, 0.001], "one/b": [1.0, 1.0, 1.0, 0.0]}, index=scenes)}
+    found.models = {("penalty", "one/a"): {"n": 1.0, "flops": 2e-3}, ("penalty", "one/b"): {"n": 1.2, "flops": per_flop}}
+    found.caution = dict.fromkeys(found.models, 1.0)
+    assert found._compared(data) == {"penalty": compared}
+
+
 def test_who_scatters_must_be_ahead_by_more():
     times_of = rule.document(mechanisms(lambda family, name: {"chain": 2.0, "grid": 0.5}.get(family, 1.0) if name == "one/b" else 1.0))["times"]
     assert times_of["one/a"]["penalty"]["caution"] == pytest.approx(1) and 1.1 < times_of["one/b"]["penalty"]["caution"] < 1.5
@@ -174,19 +186,19 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
     described, parted, own = sentences.cases(tables, VIEW)
     assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
-        "one/a; but one/b if the factor has 10 or more non-zeros a column; on families left out")
+        "if the factor has less than 10 non-zeros a column, one/a; otherwise one/b; on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
 
-def test_three_cases_by_hand_are_told_one_after_the_other():
+def test_cases_by_hand_are_told_side_by_side():
     case = {"scheme": "penalty", "scenes": 1} | {f"{end}_{name}": None for name in by_hand.SHOWN for end in ("least", "below")}
-    rows = [case | {"library": "one/a", "below_per_column": 14.0}, case | {"library": "one/b", "least_per_column": 14.0, "below_dense": 28.0},
-            case | {"library": "one/c", "least_per_column": 14.0, "least_dense": 28.0}]
-    told = ("one/a if the factor has less than 14 non-zeros a column; "
-            "else one/b if a factorization takes less than 28 % of a full one's operations, else one/c")
-    assert sentences._taken(pandas.DataFrame(rows)) == told
-    assert sentences._taken(pandas.DataFrame([rows[0], rows[1], rows[2] | {"library": "one/a"}])).startswith("one/a; but one/b if the factor has 14 or")
+    rows = [case | {"library": "one/a", "below_dense": 26.0, "below_per_column": 20.0}, case | {"library": "one/b", "below_dense": 26.0, "least_per_column": 20.0},
+            case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
+    below = "if a factorization takes less than 26 % of a dense solver's operations, one/a if the factor has less than 20 non-zeros a column, else one/b; "
+    assert sentences._taken(pandas.DataFrame(rows)) == below + "otherwise one/a if the factor has less than 8 non-zeros a column, else one/c"
+    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "otherwise one/c"
+    assert sentences._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"
 
 
 def test_cases_by_hand_part_where_the_fastest_changes():
