@@ -34,6 +34,12 @@ def one_map(table, windows, scheme, precision):
         _lines(axes, rows[rows.loops == loops], windows[(windows.loops == loops) & (windows.precision == precision)],
                ("lower", "upper") if scheme == "penalty" else ("lower",))  # estimates of the upper end hold for that form
         axes.set_title(f"N = {loops:.0f}, n = {2 * loops + 2:.0f}")
+    asked = rows[rows.penalty_asked != "auto"]  # of all sizes: panels share their axes, and of the largest some may be missing
+    steps, scaled = (_edges(numpy.unique(asked[name])) for name in ("step", "alpha_dt2_4"))
+    ticks = numpy.unique(asked.step)[::-1][::2][::-1]
+    for axes in grid[:len(sizes)]:
+        axes.set(xlim=steps[[0, -1]], ylim=(4 * scaled[0] / steps[-1]**2, 4 * scaled[-1] / steps[0]**2))
+        axes.set_xticks(ticks, [f"{1e3 * step:.3g}" for step in ticks])
     figure.supxlabel("step Δt, ms", fontsize=10)
     figure.supylabel("penalty factor α, kg/(m² s²)", fontsize=10)
     figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02, label="largest position error, m")
@@ -63,9 +69,7 @@ def _panel(axes, rows):
     degraded = grid[grid.status == "degraded"]
     axes.plot(degraded.step, degraded.penalty, "o", markersize=2.5, markerfacecolor="white",
               markeredgecolor="black", markeredgewidth=0.5, label="degraded" if len(degraded) else None)
-    axes.set(xscale="log", yscale="log", xlim=mesh[0][0, [0, -1]], ylim=mesh[1][[0, -1], [-1, 0]])
-    ticks = errors.columns[::-1][::2][::-1]
-    axes.set_xticks(ticks, [f"{1e3 * step:.3g}" for step in ticks])
+    axes.set(xscale="log", yscale="log")
 
 
 def _edges(values):

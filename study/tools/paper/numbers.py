@@ -259,8 +259,9 @@ def _window(known):
     largest = rows.nlargest(1, "loops")
     found = each("stability/windows", largest, **{name: number(largest[name].max()) for name in ("loops", "lower", "upper")})
     tried = maps[(maps.penalty_asked != "auto") & (maps.precision == "double") & (maps.scheme == "penalty") & (maps.status != "dropped")]
-    good = (tried.status == "ok").groupby([tried.loops, tried.step]).sum()
-    found |= each("stability/maps", tried, tried=tried.penalty_asked.groupby([tried.loops, tried.step]).nunique().max(), good_least=good.min(), good_most=good.max())
+    number_tried, good = tried.groupby(["loops", "step"]).status.count(), (tried.status == "ok").groupby([tried.loops, tried.step]).sum()
+    good = good[number_tried == number_tried.max()]  # of the largest size the budget may leave out some
+    found |= each("stability/maps", tried, tried=number_tried.max(), good_least=good.min(), good_most=good.max())
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
     for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
         mine = automatic[automatic.scheme == scheme]
