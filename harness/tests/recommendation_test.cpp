@@ -214,8 +214,8 @@ TEST(Recommendation, RefusesWhatIsNoRule) {
                       [](json& rule) { rule["candidates"]["penalty"] = {"d/own"}; });
   expect_rule_refused("the candidate a/large is no library with times in the saddle-point form",
                       [](json& rule) { rule["candidates"]["saddle-point"] = {"a/large"}; });
-  expect_rule_refused("there are 6 candidates, allowed are 1 to 5",
-                      [](json& rule) { rule["candidates"]["penalty"] = Names(5, "a/large"); });
+  expect_rule_refused("there are 7 candidates, allowed are 1 to 6",
+                      [](json& rule) { rule["candidates"]["penalty"] = Names(6, "a/large"); });
   expect_rule_refused("the layer is 'other'",
                       [](json& rule) { rule["times"]["a/large"]["layer"] = "other"; });
   expect_rule_refused("n*m is -1, allowed", [](json& rule) {

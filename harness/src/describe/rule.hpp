@@ -61,7 +61,7 @@ struct Rule {
 /// What a scene's distance to a measured one is taken in; every measured scene has them, above 0.
 inline constexpr const char* kDistanceFeatures[] = {"n", "per_column", "flops", "tangent"};
 
-inline constexpr int kMostCandidates = 5;
+inline constexpr int kMostCandidates = 6;
 
 /// None from an empty object, {}: no rule has been measured. Throws std::runtime_error, with the
 /// reason on one line, if `text` is no rule; README.md has the format.
