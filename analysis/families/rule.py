@@ -37,6 +37,7 @@ def judged(tables, registry):
     if len(set(data.family.values())) < FAMILIES:
         return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
+    data.losses = {scheme: losses for scheme, losses in data.losses.items() if all(rest.candidates[scheme] for rest in rests.values())}
     ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
                               columns=["family", "scheme", "implementation", "ratio"])
     whole = _Rule(data)
@@ -170,6 +171,9 @@ class _Rule:
         for scheme in data.losses:
             costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
             names = [name for name in costs if (scheme, name) in self.models and (costs[name] == 0).any()]
+            if not names:  # too few were timed in this form
+                found[scheme] = []
+                continue
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
             times = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T
             costs = costs[names].to_numpy()
@@ -197,7 +201,7 @@ class _Data:
         self.features["saddle_per_column"] = self.features.saddle_factor / (n + m)
         # Operations in % of a dense solver's, as elimination.hpp has them.
         dense = n * m**2 + full_flops(m) + self.features.stiff * (full_flops(n) + n**2 * m)
-        self.features["saddle_dense"] = 100 * self.features.saddle_flops / dense
+        self.features["saddle_dense"] = 100 * self.features.saddle_flops / dense.clip(lower=1)
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
         shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
         for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):

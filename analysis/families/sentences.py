@@ -6,11 +6,11 @@ from analysis.families import by_hand
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
-OPERATIONS = ("takes {} % or more of a dense solver's operations", "takes less than {} % of a dense solver's operations")
-COLUMNS = ("has {} or more non-zeros a column", "has less than {} non-zeros a column")
-LIMITS = {name: [f"{what} {end}" for end in ends] for name, what, ends in (
-    ("dense", "a factorization", OPERATIONS), ("per_column", "the factor", COLUMNS),
-    ("saddle_dense", "factorizing the saddle-point matrix", OPERATIONS), ("saddle_per_column", "its factor", COLUMNS))}
+LIMITS = {"dense": ("a factorization takes {} % or more of a full L's operations", "a factorization takes less than {} % of a full L's operations"),
+          "per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
+          "saddle_dense": ("factorizing the saddle-point matrix takes {} % or more of a dense solver's operations",
+                           "factorizing the saddle-point matrix takes less than {} % of a dense solver's operations"),
+          "saddle_per_column": ("the saddle-point matrix's factor has {} or more non-zeros a column", "the saddle-point matrix's factor has less than {} non-zeros a column")}
 
 
 def answers(tables, view):

@@ -195,7 +195,7 @@ def test_cases_by_hand_are_told_side_by_side():
     case = {"scheme": "penalty", "scenes": 1} | {f"{end}_{name}": None for name in by_hand.SHOWN for end in ("least", "below")}
     rows = [case | {"library": "one/a", "below_dense": 26.0, "below_per_column": 20.0}, case | {"library": "one/b", "below_dense": 26.0, "least_per_column": 20.0},
             case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
-    below = "if a factorization takes less than 26 % of a dense solver's operations, one/a if the factor has less than 20 non-zeros a column, else one/b; "
+    below = "if a factorization takes less than 26 % of a full L's operations, one/a if the factor has less than 20 non-zeros a column, else one/b; "
     assert sentences._taken(pandas.DataFrame(rows)) == below + "otherwise one/a if the factor has less than 8 non-zeros a column, else one/c"
     assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "otherwise one/c"
     assert sentences._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"

@@ -150,10 +150,10 @@ TEST(Elimination, ASubstitutionComesRightAfterItsVariable) {
 }
 
 TEST(Elimination, LinearConstraintsOwnWhatNoOtherHas) {
-  ModelData data{.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {0.0, 1.0}}},
-                 .mass = {{0, 0, 1.0}, {1, 1, 1.0}, {2, 2, 1.0}, {3, 3, 1.0}},
-                 .force = {0.0, 0.0, 0.0, 0.0},
-                 .initial_velocity = {0.0, 0.0, 0.0, 0.0}};
+  ModelData data;
+  data.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {0.0, 1.0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}, {2, 2, 1.0}, {3, 3, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0, 0.0, 0.0};
   data.linear_constraints = {{.terms = {{0, 1.0}, {1, -2.0}}, .value = 1.0, .name = "largest"},
                              {.terms = {{2, 1e-4}, {3, 1.0}}, .value = 1.0, .name = "far below"},
                              {.terms = {{3, 1.0}}, .value = 1.0, .name = "nothing of its own"}};
@@ -161,9 +161,9 @@ TEST(Elimination, LinearConstraintsOwnWhatNoOtherHas) {
 }
 
 TEST(Elimination, ADistanceOwnsAPointThatNoOtherConstraintHas) {
-  ModelData data{.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {2.0, 0.0}}, {"C", 4, {3.0, 0.0}}},
-                 .force = std::vector<double>(6, 0.0),
-                 .initial_velocity = std::vector<double>(6, 0.0)};
+  ModelData data;
+  data.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {2.0, 0.0}}, {"C", 4, {3.0, 0.0}}};
+  data.force = data.initial_velocity = std::vector<double>(6, 0.0);
   for (int i = 0; i < 6; ++i) data.mass.push_back({i, i, 1.0});
   data.dot_constraints = {{0, 1, 0, 1, 1.0, "AB"}, {1, 2, 1, 2, 1.0, "BC"}};
   EXPECT_EQ(owned_coordinates(Model(data)), (Lists{{0, 1}, {4, 5}}));

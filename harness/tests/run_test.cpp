@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "check/reference_run.hpp"
@@ -192,13 +193,15 @@ TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
 /// then it is 5 m lower, and as fast as it has to be.
 class Dipping final : public Simulation {
  public:
-  static inline double last = 0.0;  // s, the end of the last step
+  static inline double last = 0.0;          // s, the end of the last step
+  static inline double throws_after = 1e9;  // s
   using Simulation::Simulation;
 
  protected:
   void do_set_state(const State& state) override { state_ = state; }
   StepOutcome do_step() override {
     last = time();
+    if (last > throws_after) throw std::runtime_error("enough");
     const bool is_low = std::lround(last / 1.25e-3) % 10 == 1;
     state_.q[1] = is_low ? -5.0 : 0.0;
     state_.v[0] = is_low ? std::sqrt(2 * 10 * 5.0) : 0.5;
@@ -227,6 +230,12 @@ TEST(Run, GoesOnFromWhereItIsAfterAFalseAlarm) {
   EXPECT_NE(summary.status, RunStatus::diverged) << summary.reason;
   EXPECT_LT(summary.energy_drift_max.value(), 0.01);
   EXPECT_NEAR(Dipping::last, 10.0, 1e-9);
+  Dipping::throws_after = 5.0;
+  const RunSummary thrown = run(scene, variant, settings);
+  Dipping::throws_after = 1e9;
+  EXPECT_EQ(thrown.reason, "the implementation threw: enough");
+  EXPECT_NEAR(thrown.failed_at.value(), 5.0, 2e-3);
+  EXPECT_LT(thrown.energy_drift_max.value(), 0.01);
 }
 
 TEST(Run, JudgesOneStepIn64To128OrThirtyTwoTimes) {

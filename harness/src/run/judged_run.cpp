@@ -43,8 +43,7 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       next_judged_(judged_after(0)),
       next_look_(steps_ + 1),
       state_(std::move(start)),
-      samples_(judged_together(scene, settings, observer_ != nullptr),
-               Sample{0, state_, state_}),
+      samples_(judged_together(scene, settings, observer_ != nullptr), Sample{0, state_, state_}),
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
@@ -99,8 +98,12 @@ void JudgedRun::take(const StepOutcome& outcome) {
   const bool is_judged = step == next_judged_;
   if (is_judged) {
     samples_[waiting_].step = step;
-    copy(samples_[waiting_++].after);
-    if (waiting_ == samples_.size() || step == steps_) judge_samples();
+    copy(samples_[waiting_].after);
+    ++waiting_;
+    // A step at the limit may be one of a motion that is lost, of which each takes long.
+    const bool is_doubtful = outcome.status == StepStatus::pass_limit;
+    if (waiting_ == samples_.size() || step == steps_ || is_doubtful) judge_samples();
+    if (set_back_ && !is_over_) catch_up();
     if (is_over_) return;
     next_judged_ = judged_after(step);
   }
@@ -135,7 +138,7 @@ void JudgedRun::judge_samples() {
   aside_ = 0.0;
   for (std::size_t i = 0; i < waiting_ && !is_over_; ++i) judge(samples_[i]);
   waiting_ = 0;
-  if (!is_over_) judging_.end(aside_);
+  judging_.end(aside_);
 }
 
 void JudgedRun::judge(Sample& sample) {
@@ -264,6 +267,7 @@ void JudgedRun::take_exception() {
   } catch (const std::exception& error) {
     // Without the simulation, which may be gone.
     for (const Sample& sample : std::span(samples_).first(std::exchange(waiting_, 0))) {
+      if (sample.step <= good_.step) continue;
       const std::string lost = judge_.judge(time(sample.step), sample.after);
       has_figures_ = true;
       if (lost.empty()) continue;

@@ -35,6 +35,8 @@ class JudgedRun {
     StepAgain::Create create;
     /// Whose equations it solves: the scene's, or these with their constraints scaled.
     const Model* model = nullptr;
+    /// Whether again() gives another simulation than the one that does the steps.
+    bool is_again_another = false;
   };
 
   /// `scene` must outlive this, and so must the model of begin().
@@ -77,6 +79,7 @@ class JudgedRun {
   [[nodiscard]] long looked_after(const State& present) const;
   [[nodiscard]] long first_across(long step);
   bool locate_loss(const std::string& reason, long step);
+  void catch_up();
   void lose(RunStatus status, std::string reason, std::optional<double> t);
   void lose(const Judge& judge, const std::string& reason, long step);
   /// What may be behind a loss with this scheme.
@@ -98,7 +101,8 @@ class JudgedRun {
   long last_look_ = 0;
   State state_;  // the last one that was looked at
   std::vector<Sample> samples_;
-  std::size_t waiting_ = 0;  // of these: copied, to be judged together
+  std::size_t waiting_ = 0;       // of these: copied, to be judged together
+  std::optional<long> set_back_;  // step at which the simulation was left by a false alarm
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;

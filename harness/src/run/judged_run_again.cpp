@@ -1,7 +1,6 @@
 // Steps of a judged run that are done again: where its motion was lost, and what a step left.
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "run/judged_run.hpp"
 
@@ -42,9 +41,18 @@ bool JudgedRun::locate_loss(const std::string& reason, long step) {
     return true;
   }
   judge_ = judge;
-  // As far as the run has gone.
-  for (long i = step; i < summary_.steps; ++i) std::ignore = simulation.step();
+  if (!access_.is_again_another) set_back_ = step;
   return false;
+}
+
+/// After a false alarm: does the steps again that were done since.
+void JudgedRun::catch_up() {
+  Simulation& simulation = access_.again();
+  for (long i = *set_back_ + 1; i <= summary_.steps && !is_over_; ++i) {
+    if (simulation.step().status != StepStatus::factorization_failed) continue;
+    lose(RunStatus::diverged, "the tangent matrix could not be factorized" + hint(), time(i));
+  }
+  set_back_.reset();
 }
 
 /// The step at which the motion found to have jumped at `step` did so, by doing those since the

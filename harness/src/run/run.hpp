@@ -96,7 +96,7 @@ long judge_interval(const Scene& scene, const RunSettings& settings);
 /// beyond a table, out of a range, too coarse steps.
 void require_duration(const Scene& scene, const RunSettings& settings);
 
-/// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure;
+/// Simulates; stops where the judge refuses a state. Never throws for a numeric failure;
 /// throws UsageError if settings are out of range or the duration is beyond the model's drivers.
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
                const Observer& observer = {}, const Follower& follower = {});

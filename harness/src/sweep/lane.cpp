@@ -54,7 +54,7 @@ class BatchLane {
                      [this](const StepSettings& step) {
                        return create_simulation(variant_, lane_.scene.model, step);
                      },
-                     &lane_.scene.model});
+                     &lane_.scene.model, true});
     });
   }
   void take(const StepOutcome& outcome) {
