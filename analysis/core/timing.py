@@ -233,6 +233,45 @@ def rank(rows, names=None):
         winner = faster
 
 
+def within(paired, first, second):
+    """(low, high) of the ratio in these very layouts of the program, at this place of the fill: by what processes of one layout differ
+    by, or, where each has one process, by its rounds. (NaN, NaN) where neither tells it."""
+    groups = by_layout(paired, log_ratios(paired, first, second))
+    freedom = sum(map(len, groups)) - len(groups)
+    if freedom:
+        variance = sum(float(numpy.var(one)) * len(one) for one in groups) / freedom
+    else:
+        _, variance = rounds(paired, first, second)
+        freedom = 2 * len(groups)  # at least: a process tells it with three rounds or more
+    if not variance:
+        return math.nan, math.nan
+    error = math.sqrt(variance * sum(1 / len(one) for one in groups)) / len(groups)
+    middle = float(numpy.mean([numpy.mean(one) for one in groups]))
+    half = float(special.stdtrit(freedom, (1 + CONFIDENCE) / 2)) * error
+    return math.exp(middle - half), math.exp(middle + half)
+
+
+def rounds(paired, first, second):
+    """(variance of a round's logarithm of the ratio, variance of the median over a process's rounds), means over processes."""
+    found = []
+    for key in sorted(paired.logs[first].keys() & paired.logs[second].keys()):  # in one order: sums are the same to the last digit
+        count = min(len(paired.logs[first][key]), len(paired.logs[second][key]))
+        if count > 2:
+            one = float(numpy.var(paired.logs[first][key][:count] - paired.logs[second][key][:count], ddof=1))
+            found.append((one, math.pi / 2 * one / count))
+    return tuple(map(float, numpy.mean(found, axis=0))) if found else (0.0, 0.0)
+
+
+def holm(rows):
+    """Marks which rows stay decided when all are asked at once [Holm 1979]: the chance of one false winner or more among them stays below 5 %."""
+    asked = sorted((row for row in rows if not math.isnan(row.get("chance", math.nan))), key=lambda row: row["chance"])
+    for place, row in enumerate(asked):
+        if row["chance"] > 0.05 / (len(asked) - place):
+            break
+        row["holm"] = row["decided"]
+    return rows
+
+
 def differing(rows):
     """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
     contenders (others are copies of one code) stands; without one nobody can be trusted."""

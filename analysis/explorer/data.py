@@ -14,12 +14,13 @@ from analysis.accuracy.winners import meeting
 from analysis.core import records, schema, timing
 from analysis.core.contest import by_scene, grouped
 from analysis.core.files import read_object
+from analysis.core.gather import gather
 from analysis.core.view import Folder, View, facts_of
 from analysis.families.tables import SCHEMES, family_of
 from analysis.map.results import FAILURES, Results
 from analysis.map.timed import AFTER
 
-DIGITS = 7  # of samples
+DIGITS = 6  # of samples
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ def _contest(one, number):
     layouts = timing.layouts_of(one.rows)
     return {"part": one.part, "scene": one.scene, "form": one.form, "family": one.family, "n": one.n, "fill": _short(one.fill),
             "beyond": one.beyond, "able": [number[name] for name in one.able], "failed": [number[name] for name in one.failed],
-            "lost": [[number[name], *why] for name, why in one.lost.items()],
+            "lost": [[*why, places] for why, places in gather((why, number[name]) for name, why in one.lost.items()).items()],
             "look": [[number[name], _short(us)] for name, us in one.look.items()],
             "processes": [[environment, int(process), bool(one.part == "map" and process > AFTER), record, layouts.get(process, "")]
                           for environment, process, record in keys],
@@ -142,8 +143,12 @@ def _curve(one, number):
     del known["points"], known["rounds"]
     return known | {
         "family": family_of(one.scene), "rounds": rows,
-        "points": [[number[row[0]], *(None if isinstance(value, float) and numpy.isnan(value) else value for value in row[1:])]
-                   for row in points.itertuples(index=False)]}
+        "points": [[number[row.implementation], row.setting, row.step, *map(_known, (row.error, row.time, row.time_low, row.time_high)),
+                    row.time_from if isinstance(row.time_from, str) else None, row.record] for row in points.itertuples(index=False)]}
+
+
+def _known(value):
+    return None if numpy.isnan(value) else _short(value)
 
 
 def _short(value):

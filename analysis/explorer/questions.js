@@ -16,7 +16,7 @@ for (const set of DATA.sets) {
     one.features = set.mechanisms[one.scene] ?? {};
     one.able = one.able.map(name);
     one.failed = one.failed.map(name);
-    one.lost = one.lost.map(([place, status, reason]) => ({name: name(place), status, reason}));
+    one.lost = one.lost.flatMap(([status, reason, places]) => places.map((place) => ({name: name(place), status, reason})));
     one.look = new Map(one.look.map(([place, us]) => [name(place), us]));
     one.processes = one.processes.map(([environment, number, again, record, layout]) => ({environment, number, again, record, layout}));
     one.rows = one.rows.map(([place, process, samples]) => [name(place), one.processes[process], samples]);

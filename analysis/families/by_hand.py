@@ -14,12 +14,16 @@ def table(data, rests, rule, worth):
     """A row a case. data, rule, rests: of rule.py, {family: the rule without its times}; worth: of the mean cost, that one more case must save."""
     for scheme, losses in data.losses.items():
         features, weights = data.features.loc[losses.index], data.weights(losses.index)
+
+        def cases_of(known, scheme=scheme, features=features, weights=weights):
+            return _cases(known.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth)
+
         chosen = {}
         for family, rest in rests.items():
             left = features[[data.family[scene] == family for scene in features.index]]
-            for where, name in _cases(rest.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth):
+            for where, name in cases_of(rest):
                 chosen |= dict.fromkeys(_inside(where, left), name)
-        for where, name in _cases(rule.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth):
+        for where, name in cases_of(rule):
             scenes = _inside(where, features)
             found = numpy.array([losses.loc[scene, chosen[scene]] for scene in scenes])
             known = found[~numpy.isnan(found)]

@@ -1,4 +1,6 @@
 # The map of real mechanisms, libraries first and code of our own beside; the rule on families that were left out.
+from itertools import cycle
+
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -10,6 +12,7 @@ from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
 FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
+FILLS = ("full", "none", "left")  # of marks of code of our own, who is the fastest most often first
 
 
 def draw(tables, view):
@@ -64,17 +67,19 @@ def _lead(axes, rows, scenes, look, marks, registry):
     if fastest.empty:
         missing(axes, "no code of our own was timed")
         return
+    insides = dict(zip(fastest.implementation.value_counts().index, cycle(FILLS)))
     for row in fastest.itertuples():
         axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low] if row.to_rival_low > 0 else [1 / row.to_rival] * 2,
                   color=look.colour(row.implementation), linewidth=1.0, alpha=0.7)
-        axes.plot(row.n, 1 / row.to_rival, marker=marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none")
+        axes.plot(row.n, 1 / row.to_rival, marker=marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none",
+                  fillstyle=insides[row.implementation], markerfacecoloralt="white")
     axes.axhline(1.0, color=GREY, linewidth=0.9)
     _scales(axes, fastest.n, 1 / fastest.to_rival, "times as fast as the fastest library")
     low, top = axes.get_ylim()
     axes.set_ylim(low, top * (top / low) ** 0.2)  # room for the legend, above all marks
     axes.set_title("Fastest code of our own, which is no library; 95 % intervals")
-    axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="upper left",
-                fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")
+    axes.legend(handles=[Line2D([], [], marker="o", markersize=7.5, color=look.colour(name), linestyle="none", fillstyle=fill, markerfacecoloralt="white",
+                                label=name) for name, fill in insides.items()], loc="upper left", fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")
 
 
 def _scales(axes, n, values, label):

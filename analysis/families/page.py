@@ -3,7 +3,7 @@ from analysis.core.controls import judged
 from analysis.core.text import number
 from analysis.families.bounds import bounds
 from analysis.families.rule import missed, summary
-from analysis.families.sentences import where
+from analysis.families.sentences import meanings, where
 from analysis.families.times import features_of
 
 
@@ -16,13 +16,15 @@ def context(tables, view):
     lost = {}
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
-    held = tables["held"]
+    held, decided = tables["held"], tables["winners"][(tables["winners"].layer == "libraries") & tables["winners"].decided.fillna(False).astype(bool)]
     return {"settings": view.settings, "ranked": ranked, "controls": judged(tables["controls"]), "bounds": bounds(tables),
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
+            "holm": [(scheme, int(rows.holm.astype(bool).sum()), len(rows)) for scheme, rows in decided.groupby("scheme", sort=False)],
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
             "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
             **{name: tables[name].to_dict("records") for name in ("by_hand", "alone", "defaults", "growth")}, "where": where,
+            "meanings": [(scheme, meanings(rows)) for scheme, rows in tables["by_hand"].groupby("scheme", sort=False)] if len(tables["by_hand"]) else [],
             "orderings": [(scene, rows.n.iloc[0], {row["ordering"]: row for row in rows.to_dict("records")})
                           for scene, rows in tables["orderings"].groupby("scene", sort=False)]}
 

@@ -21,7 +21,7 @@ FAMILIES = 4     # at least, for a rule
 MUCH = 0.30      # a loss
 FAILED = 3.0     # loss of who is of no use there: it disagrees, crashes, ...
 MOST = 3.0       # what a loss counts at most, where candidates are chosen
-UNKNOWN = MOST * (1 + 4 * MOST)  # the cost of who has no loss, where someone is chosen by one or two numbers
+UNKNOWN = MOST * (1 + 4 * MOST)  # the cost of who has no loss, where one number chooses
 USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
 WORK = {"penalty": "flops", "saddle-point": "saddle_flops"}  # of a factorization
 FEWEST = 8       # scenes that the time of a step is fitted on
@@ -154,15 +154,18 @@ class _Rule:
 
     def choice(self, scheme, features):
         """(name, predicted µs) of the candidate that is taken on a scene."""
-        times = {name: predicted(self.models[scheme, name], features)[0] for name in self.candidates[scheme]}
-        name = min(times, key=lambda one: times[one] * self.caution[scheme, one])
-        return name, times[name]
+        name = self._cautious(scheme, self.candidates[scheme], features).iloc[0].idxmin()
+        return name, predicted(self.models[scheme, name], features)[0]
 
     def costs(self, scheme, features):
         """Of scenes and candidates, by predicted times."""
-        times = pandas.DataFrame({name: self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in self.candidates[scheme]},
-                                 index=features.index)
+        times = self._cautious(scheme, self.candidates[scheme], features)
         return cost(times.div(times.min(axis=1), axis=0) - 1)
+
+    def _cautious(self, scheme, names, features):
+        """Predicted µs times caution, of scenes and names."""
+        return pandas.DataFrame({name: self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names},
+                                index=features.index)
 
     def _compared(self, data):
         """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere. Among them are a dense one and
@@ -175,12 +178,12 @@ class _Rule:
                 found[scheme] = []
                 continue
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
-            times = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T
+            times = self._cautious(scheme, names, features).to_numpy()
             costs = costs[names].to_numpy()
             best, most = {}, features[WORK[scheme]].argmax()
             dense = {place for place, name in enumerate(names) if data.registry.variants[name].get("dense")}
             sparse = set(range(len(names))) - dense
-            asked = [dense, {min(sparse, key=lambda place: times[most, place])} if sparse else {}]
+            asked = [dense, {min(sparse, key=lambda place: times[most, place])} if sparse else set()]
             for places in (some for size in range(1, CANDIDATES + 1) for some in combinations(range(len(names)), size)
                            if all(not kind or kind & {*some} for kind in asked)):
                 found_cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]

@@ -6,11 +6,10 @@ from analysis.families import by_hand
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
-LIMITS = {"dense": ("a factorization takes {} % or more of a full L's operations", "a factorization takes less than {} % of a full L's operations"),
-          "per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
-          "saddle_dense": ("factorizing the saddle-point matrix takes {} % or more of a dense solver's operations",
-                           "factorizing the saddle-point matrix takes less than {} % of a dense solver's operations"),
-          "saddle_per_column": ("the saddle-point matrix's factor has {} or more non-zeros a column", "the saddle-point matrix's factor has less than {} non-zeros a column")}
+# Numbers of the rule by hand: letter, meaning.
+SIGNS = {"dense": ("p", "operations of a factorization, in % of a full L's"), "per_column": ("c", "non-zeros of L a column"),
+         "saddle_dense": ("p", "operations to factorize the saddle-point matrix, in % of a dense solver's"),
+         "saddle_per_column": ("c", "non-zeros of its L a column")}
 
 
 def answers(tables, view):
@@ -49,7 +48,7 @@ def _defaults(rows):
         return []
     told = lambda row: (f"that of {row['rule']} ({'about ' if row['rough'] else ''}{number(row['mean'])} times the fastest library's time on "
                         f"average, {number(row['worst'])} at worst)")
-    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} mechanisms, the least costly is "
+    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} scenes, the least costly is "
              f"{told(rows.iloc[0])}, the most costly {told(rows.iloc[-1])}."}]
 
 
@@ -71,25 +70,22 @@ def cases(tables, view):
     return found
 
 
-def where(row, but=""):
-    """The limits of a case of the rule by hand, but for those of one number."""
-    return " and ".join(LIMITS[name][end].format(number(row[column])) for name in by_hand.SHOWN if name != but
-                        for end in (0, 1) if not pandas.isna(row[column := f"{('least', 'below')[end]}_{name}"]))
+def where(row):
+    """The limits of a case of the rule by hand: "p < 26, c ≥ 8"."""
+    return ", ".join(f"{sign} {relation} {number(row[column])}" for name, (sign, _) in SIGNS.items()
+                     for end, relation in (("least", "≥"), ("below", "<")) if not pandas.isna(row[column := f"{end}_{name}"]))
+
+
+def meanings(rows):
+    """Of the letters in these cases: "p: ...; c: ..."."""
+    return "; ".join(f"{sign}: {meaning}" for name, (sign, meaning) in SIGNS.items() if rows[[f"least_{name}", f"below_{name}"]].notna().any(axis=None))
 
 
 def _taken(rows):
-    """The cases of a form in words: those on either side of the limit that parts them all."""
-    for parting in by_hand.SHOWN:
-        below, above = (rows[rows[f"{end}_{parting}"].notna()] for end in ("below", "least"))
-        if len(below) and len(below) + len(above) == len(rows) and len({*below[f"below_{parting}"], *above[f"least_{parting}"]}) == 1:
-            under = LIMITS[parting][1].format(number(below[f"below_{parting}"].iloc[0]))
-            return f"if {under}, {_side(below, parting)}; otherwise {_side(above, parting)}"
-    return rows.library.iloc[0]
-
-
-def _side(rows, parting):
-    first, *others = sorted(rows.to_dict("records"), key=lambda row: " or more " in where(row, parting))
-    return f"{first['library']} if {where(first, parting)}, else {others[0]['library']}" if others else first["library"]
+    """The cases of a form in words."""
+    if not (known := meanings(rows)):
+        return rows.library.iloc[0]
+    return "; ".join(f"{where(row)}: {row['library']}" for row in rows.to_dict("records")) + f" ({known})"
 
 
 def _lost(found, count):

@@ -1,5 +1,7 @@
 # Rows of mechanisms, of contenders and of winners, scene by scene and form by form; how time grows with size; what each order of
 # elimination leaves to do.
+from collections import Counter
+
 import pandas
 
 from analysis.core import timing
@@ -30,6 +32,8 @@ def build(records, view):
                        | {"look_us": looks.get(name, {}).get("step_us")}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
+        for layer in layers:
+            timing.holm([row for row in winners if (row["scheme"], row["layer"]) == (scheme, layer)])
         twinned = [one for one in by_role.get(scheme, []) if any(name.endswith(TWIN) for name in one.cell["contenders"])]
         twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows)]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
@@ -54,12 +58,14 @@ def family_of(scene):
 def _winner(timed, cells, names):
     found = timing.rank(timed, agreed(cells, names))
     if found is None:
-        lost = next((one for one in cells.values() if one["status"] != "ok"), None)
-        return {"winner": "", "reason": f"{lost['status']}: {lost['reason']}" if lost else "nobody takes part",
-                "record": lost["record"] if lost else ""}
+        lost = [one for name, one in cells.items() if name in names and one["status"] != "ok"]
+        said = Counter(f"{one['status']}: {one['reason']}" for one in lost).most_common(1)  # of most
+        return {"winner": "", "reason": said[0][0] if said else "nobody takes part", "record": lost[0]["record"] if lost else ""}
     both = [name for name in (found.winner, found.second) if name]
+    within = timing.within(timed, found.second, found.winner) if found.second else ()
     return {"winner": found.winner, "step_us": cells[found.winner]["step_us"], "second": found.second or "",
-            "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, "decided": found.decided,
+            "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, **dict(zip(("within_low", "within_high"), within)),
+            "chance": found.chance, "holm": False, "decided": found.decided,
             "settled": found.settled, "equivalent": " ".join(found.equivalent),
             "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
 
@@ -83,7 +89,7 @@ def orderings(about):
     """A row for each scene and order of elimination, as `mbs describe` computes them."""
     return pandas.DataFrame([
         {"scene": scene, "n": record.output.get("variables"), "ordering": name, "factor": one["factor_nonzeros"],
-         "per_column": one["factor_nonzeros"] / record.output["variables"], "flops": one["flops"], "height": one["height"],
+         "per_column": one["per_column"], "flops": one["flops"], "height": one["height"],
          "record": record.name}
         for scene, record in about.items()
         for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one])

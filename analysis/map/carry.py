@@ -3,7 +3,6 @@ import math
 
 import numpy
 import pandas
-from scipy import special
 
 from analysis.core import timing
 from analysis.map.timed import AFTER
@@ -22,29 +21,11 @@ def components(timed, seeds):
     return found.reindex([source for source in SOURCES if source in found.index]).reset_index()
 
 
-def within(paired, first, second):
-    """(low, high) of the ratio in these very layouts of the program, at this place of the fill: by what processes of one layout differ
-    by, or, where each has one process, by its rounds. (NaN, NaN) where neither tells it."""
-    groups = timing.by_layout(paired, timing.log_ratios(paired, first, second))
-    freedom = sum(map(len, groups)) - len(groups)
-    if freedom:
-        variance = sum(float(numpy.var(one)) * len(one) for one in groups) / freedom
-    else:
-        _, variance = _rounds(paired, first, second)
-        freedom = 2 * len(groups)  # at least: a process tells it with three rounds or more
-    if not variance:
-        return math.nan, math.nan
-    error = math.sqrt(variance * sum(1 / len(one) for one in groups)) / len(groups)
-    middle = float(numpy.mean([numpy.mean(one) for one in groups]))
-    half = float(special.stdtrit(freedom, (1 + timing.CONFIDENCE) / 2)) * error
-    return math.exp(middle - half), math.exp(middle + half)
-
-
 def _of_scenes(timed):
     for _, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
         paired = timing.Paired(group)
         if pair := _leaders(paired):
-            variances = nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair))
+            variances = nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), timing.rounds(paired, *pair))
             names = " ".join(group[group.implementation == pair[0]].record)
             yield from ({"source": source, "variance": variance, "record": names} for source, variance in variances.items())
 
@@ -91,14 +72,3 @@ def _leaders(paired):
     """The two that are fastest, without twins; None if there are not two."""
     ranking = timing.rank(paired, {name for name in paired.logs if not name.endswith(timing.TWIN)})
     return (ranking.winner, ranking.second) if ranking and ranking.second else None
-
-
-def _rounds(paired, first, second):
-    """(variance of a round's logarithm of the ratio, variance of the median over a process's rounds), means over processes."""
-    found = []
-    for key in sorted(paired.logs[first].keys() & paired.logs[second].keys()):  # in one order: sums are the same to the last digit
-        count = min(len(paired.logs[first][key]), len(paired.logs[second][key]))
-        if count > 2:
-            one = float(numpy.var(paired.logs[first][key][:count] - paired.logs[second][key][:count], ddof=1))
-            found.append((one, math.pi / 2 * one / count))
-    return tuple(map(float, numpy.mean(found, axis=0))) if found else (0.0, 0.0)

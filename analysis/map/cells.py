@@ -1,11 +1,9 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
-import math
 from dataclasses import dataclass
 
 import pandas
 
 from analysis.core import timing
-from analysis.map import carry
 from analysis.map.timed import layers
 
 
@@ -43,19 +41,9 @@ def map_cells(results, names):
 
 
 def table(results):
-    return pandas.DataFrame([row for layer in layers(results.registry) for row in _holm(
+    """Fills that were added where the winner changes are asked, too."""
+    return pandas.DataFrame([row for layer in layers(results.registry) for row in timing.holm(
         [_row(results, cell, layer) for cell in map_cells(results, results.layer(layer))])])
-
-
-def _holm(rows):
-    """Marks what stays decided when all cells of a layer are asked at once [Holm 1979]: the chance of one false winner
-    or more among them stays below 5 %. Fills that were added where the winner changes count."""
-    asked = sorted((row for row in rows if not math.isnan(row.get("chance", math.nan))), key=lambda row: row["chance"])
-    for place, row in enumerate(asked):
-        if row["chance"] > 0.05 / (len(asked) - place):
-            break
-        row["holm"] = row["decided"]
-    return rows
 
 
 def _row(results, cell, layer):
@@ -68,7 +56,7 @@ def _row(results, cell, layer):
         return row | {"record": next(iter(rows.record), "")}
     mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
     both = ranking.second, ranking.winner
-    within = carry.within(results.paired(cell.scene).of(*both), *both) if ranking.second else ()
+    within = timing.within(results.paired(cell.scene).of(*both), *both) if ranking.second else ()
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": ranking.margin.value, "low": ranking.margin.low,
                   "high": ranking.margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)} | dict(zip(("within_low", "within_high"), within))

@@ -10,7 +10,7 @@ def answers(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
     groups = summary.by_size(results, libraries)
-    if not groups:
+    if all(group["kind"] == "none" for group in groups):
         return [{"text": "Nothing was timed: no library took part or agreed with the reference.", "anchor": "losses"}]
     found = [{"text": f"At the four-bar's own fill: {' '.join(by_outcome(groups))}", "anchor": "answer"}]
     dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
@@ -37,6 +37,6 @@ def by_outcome(groups, what="library"):
         names = ", ".join(dict.fromkeys(one for group in mine for one in group["names"]))
         ahead = " to ".join(dict.fromkeys(f"{value:.2f}" for value in (min(margins), max(margins)))) if margins else ""
         ahead = f", {ahead} times ahead of the second" if ahead else ""
-        yield (f"{name} is the fastest {what} at {sizes}{ahead}." if kind == "decided" else
-               f"At {sizes} several are as fast as each other: {names}." if kind == "equivalent" else
-               f"At {sizes} it is not decided; the fastest is among {names}.")
+        yield {"decided": f"{name} is the fastest {what} at {sizes}{ahead}.", "equivalent": f"At {sizes} several are as fast as each other: {names}.",
+               "open": f"At {sizes} it is not decided; the fastest is among {names}.",
+               "few": f"At {sizes} too few processes were timed to tell.", "none": f"At {sizes} nobody was timed."}[kind]

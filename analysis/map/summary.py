@@ -1,4 +1,6 @@
 # What a reader should choose: the fastest library by size, dense or sparse by fill, the price of one choice.
+import math
+
 import numpy
 
 from analysis.map import paper
@@ -7,14 +9,16 @@ from analysis.map.cells import map_cells
 
 def by_size(results, names):
     """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "margins"}];
-    kind: "decided" (one name), "equivalent" or "open"; margins: of the second behind the winner."""
+    kind: "decided" (one name), "equivalent" or "open", without names "few" (of too few processes for an interval) or "none" (nobody was timed);
+    margins: of the second behind the winner."""
     groups = []
-    for cell in (one for one in map_cells(results, names) if one.fill_asked is None and one.ranking):
-        found = {"names": sorted(cell.winners), "kind": cell.outcome}
+    for cell in (one for one in map_cells(results, names) if one.fill_asked is None):
+        known = cell.ranking and not (cell.ranking.second and cell.ranking.margin.high == math.inf)
+        found = {"names": sorted(cell.winners), "kind": cell.outcome} if known else {"names": [], "kind": "few" if cell.ranking else "none"}
         if not groups or groups[-1] | found != groups[-1]:
             groups.append(found | {"first": cell.variables, "margins": []})
         groups[-1]["last"] = cell.variables
-        groups[-1]["margins"].append(cell.ranking.margin.value)  # not a number of who is alone
+        groups[-1]["margins"] += [cell.ranking.margin.value] if known else []  # not a number of who is alone
     return groups
 
 

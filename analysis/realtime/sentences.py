@@ -21,7 +21,7 @@ def _clean(steps, machine, view):
     observed = steps[steps.missed.notna()]
     missed = (f"{(observed.missed == 0).sum()} of {len(observed)} runs of {number(view.settings['duration'])} s missed no "
               "deadline at all.") if len(observed) else ""
-    said = [f"{number(rows.lost.sum(), 5)} deadlines of {number(1e3 * step)} ms in {number(rows.seconds.sum())} s"
+    said = [f"{number(rows.lost.sum(), 5)} of the deadlines of {number(1e3 * step)} ms in {number(rows.seconds.sum())} s"
             for step, rows in machine[machine.status == "done"].groupby("step")]
     lost = f"The machine itself lost {' and '.join(said)}." if said else ""
     text = " ".join(filter(None, (missed, lost)))

@@ -19,7 +19,7 @@ VIEW = SimpleNamespace(registry=REGISTRY, settings={"processes": {"penalty": 3, 
 
 def described(scene):
     found = about(scene)
-    order = {"factor_nonzeros": 20, "flops": 90, "height": 3, "widest": 4}
+    order = {"factor_nonzeros": 20, "per_column": 2.0, "flops": 90, "height": 3, "widest": 4}
     return replace(found, output=found.output | {"variables": 10, "constraints": 5, "elimination": {"orderings": {"AMD": order, "natural": None}}})
 
 
@@ -87,9 +87,10 @@ def test_controls_have_rows_and_their_twins_no_place():
     assert list(found["scenes"].implementation) == ["one/a"] and page.context(found, VIEW)["controls"]["pairs"] == 1
 
 
-@pytest.mark.parametrize("path", ["analysis/families", "analysis/accuracy", "study/tools/merge"])
-def test_pages_say_that_their_intervals_are_uncorrected(path):
-    assert "uncorrected for their number" in (ROOT / path / "page.html.j2").read_text(encoding="utf-8")
+@pytest.mark.parametrize("path, said", [
+    ("analysis/map", "by Holm"), ("analysis/families", "(Holm)"), ("analysis/accuracy", "uncorrected for their number"), ("study/tools/merge", "uncorrected for their number")])
+def test_pages_say_whether_their_intervals_are_corrected_for_their_number(path, said):
+    assert said in (ROOT / path / "page.html.j2").read_text(encoding="utf-8")
 
 
 def test_orders_of_elimination_have_rows_where_they_were_computed():
@@ -186,18 +187,19 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
     described, parted, own = sentences.cases(tables, VIEW)
     assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
-        "if the factor has less than 10 non-zeros a column, one/a; otherwise one/b; on families left out")
+        "c < 10: one/a; c ≥ 10: one/b (c: non-zeros of L a column); on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
 
-def test_cases_by_hand_are_told_side_by_side():
+def test_cases_by_hand_are_told_by_letters():
     case = {"scheme": "penalty", "scenes": 1} | {f"{end}_{name}": None for name in by_hand.SHOWN for end in ("least", "below")}
     rows = [case | {"library": "one/a", "below_dense": 26.0, "below_per_column": 20.0}, case | {"library": "one/b", "below_dense": 26.0, "least_per_column": 20.0},
             case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
-    below = "if a factorization takes less than 26 % of a full L's operations, one/a if the factor has less than 20 non-zeros a column, else one/b; "
-    assert sentences._taken(pandas.DataFrame(rows)) == below + "otherwise one/a if the factor has less than 8 non-zeros a column, else one/c"
-    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "otherwise one/c"
+    below = "p < 26, c < 20: one/a; p < 26, c ≥ 20: one/b; "
+    meant = " (p: operations of a factorization, in % of a full L's; c: non-zeros of L a column)"
+    assert sentences._taken(pandas.DataFrame(rows)) == below + "p ≥ 26, c ≥ 8: one/c; p ≥ 26, c < 8: one/a" + meant
+    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "p ≥ 26: one/c" + meant
     assert sentences._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"
 
 

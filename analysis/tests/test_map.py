@@ -129,6 +129,11 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
         f"{A} is the fastest library at n = 50, 2.00 times ahead of the second."]
 
 
+def test_sizes_that_tell_nothing_are_named():
+    groups = summary.by_size(some(cell(A, 10, 2.0) + cell(B, 10, 1.0) + failed(A, 22, "dropped") + failed(B, 22, "dropped")), [A, B])
+    assert list(sentences.by_outcome(groups)) == ["At n = 10 too few processes were timed to tell.", "At n = 22 nobody was timed."]
+
+
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
     rows = page.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
                               + failed(C, 10, "crashed", "SIGSEGV")))

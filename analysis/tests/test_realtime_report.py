@@ -103,7 +103,7 @@ def test_figures_page_and_answers():
     assert texts[0] == ("Steps of 1 ms: Of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
                         "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
                         "Of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
-    assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
+    assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 of the deadlines of 1 ms in 1.3 s."]
 
 
 def test_what_the_budget_dropped_is_counted_and_not_drawn():

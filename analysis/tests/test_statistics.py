@@ -122,7 +122,7 @@ def test_the_interval_within_these_layouts_is_narrower_and_holds_their_own_mean(
         table = in_layouts(random, 1.2, 8, each, 0.04, 0.01 if each > 1 else 0.0)
         if each == 1:  # then rounds alone tell it
             table["samples"] = [tuple(one * numpy.exp(0.01 * random.standard_normal(9))) for one in table.samples.map(lambda some: some[0])]
-        low, high = carry.within(timing.Paired(table), "a", "b")
+        low, high = timing.within(timing.Paired(table), "a", "b")
         wide = ratio(table, "a", "b")
         assert low > wide.low and high < wide.high
         covered += low <= 1.2 * math.exp(numpy.mean([in_layouts.shift[place] for place in range(8)])) <= high

@@ -129,6 +129,7 @@ const Level& Machine::level_of(std::size_t bytes) const {
 
 Machine measure_machine() {
   Machine machine;
+  machine.vector_bytes = kWidest;
   Pair y{1.0, 1.0};
   hide(y);
   machine.latencies = {

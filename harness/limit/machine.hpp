@@ -19,6 +19,7 @@ struct Level {
 
 struct Machine {
   Latencies latencies;     ///< of pairs, ns
+  int vector_bytes = 0;    ///< of the widest vectors of this build
   double peak = 0.0;       ///< flops/ns of fused operations in the widest vectors of this build
   double divisions = 0.0;  ///< divisions/ns of single numbers, likewise
   std::vector<Level> levels;

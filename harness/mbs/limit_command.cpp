@@ -67,6 +67,7 @@ nlohmann::json machine_json(const limit::Machine& machine) {
           {"multiply_ns", machine.latencies.multiply},
           {"fused_ns", machine.latencies.fused},
           {"divide_ns", machine.latencies.divide},
+          {"vector_bytes", machine.vector_bytes},
           {"flops_per_ns", machine.peak},
           {"divisions_per_ns", machine.divisions},
           {"levels", levels}};

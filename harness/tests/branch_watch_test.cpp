@@ -16,6 +16,7 @@
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/run_settings.hpp"
 
 namespace mbs {
 namespace {
@@ -24,7 +25,7 @@ TEST(ClosedParts, FindTheLoopsOfAFourBar) {
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/four_bar_2.json");
   const State start = initial_state(scene.model);
   const ClosedParts parts = closed_parts(scene.model, start.q, 60);
-  EXPECT_TRUE(parts.driven.rows.empty());
+  EXPECT_TRUE(parts.driven.empty());
   ASSERT_EQ(parts.free.size(), 1U);
   EXPECT_EQ(parts.free[0].cols.size(), parts.free[0].rows.size() + 1);
   EXPECT_TRUE(closed_parts(scene.model, start.q, 2).free.empty());
@@ -34,7 +35,7 @@ TEST(ClosedParts, AreNoneOfAnOpenChain) {
   const Scene scene = load_scene("chain:5");
   const ClosedParts parts = closed_parts(scene.model, initial_state(scene.model).q, 60);
   EXPECT_TRUE(parts.free.empty());
-  EXPECT_TRUE(parts.blocks.empty());
+  EXPECT_TRUE(parts.driven.empty());
 }
 
 TEST(BlockJacobian, IsThePieceOfTheJacobianWhereverItIsEvaluated) {
@@ -60,23 +61,97 @@ TEST(BlockJacobian, IsThePieceOfTheJacobianWhereverItIsEvaluated) {
   }
 }
 
-TEST(BranchWatch, FindsAMirroredDyad) {
-  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/examples/driven_crank.json");
-  const State start = initial_state(scene.model);
-  BranchWatch watch(scene, start, judged_length(scene.model), true);
-  ASSERT_TRUE(watch.is_needed());
-  EXPECT_EQ(watch.look(1e-9, start), "");
-  // F on the other side of the line from E to the foot.
-  State jumped = start;
-  const double ex = start.q[0], ey = start.q[1], fx = start.q[2], fy = start.q[3];
-  const double ux = 1.2 - ex, uy = -ey,
-               share = ((fx - ex) * ux + (fy - ey) * uy) / (ux * ux + uy * uy);
-  jumped.q[2] = 2 * (ex + share * ux) - fx;
-  jumped.q[3] = 2 * (ey + share * uy) - fy;
-  EXPECT_TRUE(watch.is_across(2e-9, jumped));
-  const std::string found = watch.look(2e-9, jumped);
-  EXPECT_NE(found.find("arm"), std::string::npos) << found;
-  EXPECT_NE(found.find("another assembly"), std::string::npos) << found;
+/// Cranks that are driven, each with a dyad: the shipped one, so many times beside each other.
+Scene driven_cranks(int count) {
+  auto scene = nlohmann::json::parse(R"({"assembly": {"largest_correction": 0.3}, "points": [
+      {"name": "O", "position": [0, 0], "fixed": true},
+      {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "foot", "driven": {"x": 1.2, "y": 0}}]})");
+  for (int k = 0; k < count; ++k) {
+    const std::string end = std::to_string(k), e = "E" + end, f = "F" + end;
+    scene["points"].push_back({{"name", e}, {"position", {0.5, 0.1}}});
+    scene["points"].push_back({{"name", f}, {"position", {1.2, 0.9}}});
+    const auto rod = [&](const char* name, const std::string& a, const std::string& b,
+                         double length) {
+      scene["rods"].push_back(
+          {{"name", name + end}, {"between", {a, b}}, {"mass", 1}, {"length", length}});
+    };
+    rod("crank", "O", e, 0.5);
+    rod("arm", e, f, 1.0);
+    rod("leg", "foot", f, 0.9);
+    scene["constraints"].push_back({{"name", "drive" + end},
+                                    {"type", "angle"},
+                                    {"first", {"O", "X"}},
+                                    {"second", {"O", e}},
+                                    {"value", {{"polynomial", {0, 3.0, 0.5}}}}});
+  }
+  return scene_of(scene, "test");
+}
+
+TEST(BranchWatch, FindsAMirroredDyadAmongAnyNumberOfDrivenOnes) {
+  for (const int count : {1, 20}) {
+    const Scene scene = driven_cranks(count);
+    const State start = initial_state(scene.model);
+    BranchWatch watch(scene, start, judged_length(scene.model), true);
+    ASSERT_TRUE(watch.is_needed());
+    EXPECT_EQ(watch.look(1e-9, start), "");
+    // The last F on the other side of the line from E to the foot.
+    State jumped = start;
+    const std::size_t last = start.q.size() - 4;
+    const double ex = start.q[last], ey = start.q[last + 1];
+    const double fx = start.q[last + 2], fy = start.q[last + 3];
+    const double ux = 1.2 - ex, uy = -ey,
+                 share = ((fx - ex) * ux + (fy - ey) * uy) / (ux * ux + uy * uy);
+    jumped.q[last + 2] = 2 * (ex + share * ux) - fx;
+    jumped.q[last + 3] = 2 * (ey + share * uy) - fy;
+    EXPECT_TRUE(watch.is_across(2e-9, jumped));
+    const std::string found = watch.look(2e-9, jumped);
+    EXPECT_NE(found.find("arm" + std::to_string(count - 1)), std::string::npos) << found;
+    EXPECT_NE(found.find("another assembly"), std::string::npos) << found;
+  }
+}
+
+TEST(ClosedParts, NeedWhatDrivesThemAlone) {
+  const Scene scene = driven_cranks(3);
+  const auto parts = [&](int largest) {
+    return closed_parts(scene.model, initial_state(scene.model).q, largest).driven;
+  };
+  ASSERT_EQ(parts(4).size(), 6U);
+  EXPECT_EQ(parts(3).size(), 3U);  // the cranks
+  for (const ClosedParts::Driven& part : parts(60)) {
+    EXPECT_EQ(part.block.rows.size(), 2U);
+    EXPECT_EQ(part.all.rows.size(), 2 * part.needed.size());
+    EXPECT_EQ(part.all.cols.size(), part.all.rows.size());
+  }
+}
+
+TEST(BranchWatch, SaysThatASingularPositionWasPassedWhateverIsRedundantElsewhere) {
+  // A four-bar as of four-bar:1; beside it a pendulum of two rods, or these and a third along both.
+  auto scene = nlohmann::json::parse(R"({"points": [
+      {"name": "A0", "position": [0, 0], "fixed": true},
+      {"name": "A1", "position": [1, 0], "fixed": true},
+      {"name": "B0", "position": [0, 1], "velocity": [1, 0]},
+      {"name": "B1", "position": [1, 1], "velocity": [1, 0]},
+      {"name": "P", "position": [5, 0], "fixed": true}, {"name": "Q", "position": [5, -1]},
+      {"name": "R", "position": [5, -2]}],
+      "rods": [{"name": "left", "between": ["A0", "B0"], "mass": 1},
+               {"name": "right", "between": ["A1", "B1"], "mass": 1},
+               {"name": "coupler", "between": ["B0", "B1"], "mass": 1},
+               {"name": "one", "between": ["P", "Q"], "mass": 1},
+               {"name": "two", "between": ["Q", "R"], "mass": 1}]})");
+  for (const bool is_redundant : {false, true}) {
+    if (is_redundant) {
+      scene["rods"].push_back({{"name", "along"}, {"between", {"P", "R"}}, {"mass", 1}});
+    }
+    const Scene loaded = scene_of(scene, "test");
+    RunSettings settings = test::automatic_settings(loaded, 2.0);
+    settings.half_step = settings.step;
+    settings.half_step->step /= 2;
+    settings.half_step->penalty = automatic_penalty(loaded.model, *settings.half_step);
+    const RunSummary summary = run(loaded, test::reference(), settings);
+    EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+    EXPECT_NE(summary.reason.find("singular position"), std::string::npos) << summary.reason;
+  }
 }
 
 TEST(BranchWatch, LetsALoopPassItsSingularPositions) {

@@ -88,15 +88,8 @@ const Bench& bench() {
   return result;
 }
 
-Variant variant_named(const std::string& name) {
-  const std::vector<Variant> variants = test::controls().variants;
-  const auto variant = std::ranges::find(variants, name, &Variant::name);
-  if (variant == variants.end()) throw std::invalid_argument("no control is called " + name);
-  return *variant;
-}
-
 Verdict check_control(const std::string& name, const IsolationLimits& limits) {
-  const Variant variant = variant_named(name);
+  const Variant variant = test::control(name);
   return check_implementation(bench().scene, {"control/" + name, nullptr, &variant},
                               bench().settings, bench().reference, limits);
 }
@@ -142,8 +135,8 @@ TEST(Controls, SaysSoWhenThePassLimitIsHidden) {
   settings.penalty = 1e9;
   settings.max_passes = 2;
   const ReferenceRun reference = run_reference(bench().scene, settings);
-  const Variant honest = variant_named("reference");
-  const Variant dishonest = variant_named("always_converged");
+  const Variant honest = test::control("reference");
+  const Variant dishonest = test::control("always_converged");
   const auto check = [&](const Variant& variant) {
     return check_implementation(bench().scene, {"control", nullptr, &variant}, settings, reference,
                                 {.seconds = kSeconds});
@@ -179,7 +172,8 @@ TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
     const std::string line = "^four-bar:10 +control/" + name + " +" + expected->verdict;
     EXPECT_EQ(lines_with(run.output, line), 1) << run.output;
   }
-  EXPECT_EQ(lines_with(run.output, "^2 of 7 agree with the reference .unsupported: 1.$"), 1) << run.output;
+  EXPECT_EQ(lines_with(run.output, "^2 of 7 agree with the reference .unsupported: 1.$"), 1)
+      << run.output;
   EXPECT_EQ(lines_with(run.output, "was here"), 0);
   if (!kSanitized) {
     EXPECT_EQ(run.errors, "");
@@ -196,15 +190,17 @@ TEST(ControlsProgram, HangingAndHungryOnesDoNotStopTheOthers) {
   std::string limit;
   for (const char* seconds : {"2", "20"}) {
     limit = seconds;
-    run = test::run_program(
-        MBS_CONTROLS,
-        "check four-bar:10 --time-limit " + limit +
-            " --implementation control/hangs --implementation control/allocates --implementation control/reference",
-        "ulimit -v 500000;");
+    run = test::run_program(MBS_CONTROLS,
+                            "check four-bar:10 --time-limit " + limit +
+                                " --implementation control/hangs --implementation "
+                                "control/allocates --implementation control/reference",
+                            "ulimit -v 500000;");
     if (lines_with(run.output, "out-of-memory|agrees$") == 2) break;
   }
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(lines_with(run.output, "control/hangs +timeout: did not finish within " + limit + " s$"), 1) << run.output;
+  EXPECT_EQ(
+      lines_with(run.output, "control/hangs +timeout: did not finish within " + limit + " s$"), 1)
+      << run.output;
   EXPECT_EQ(
       lines_with(run.output,
                  "control/allocates +out-of-memory: needs more than the memory limit of 488 MiB$"),

@@ -1,5 +1,4 @@
 // Constraints that weigh alike: the factors, and that the motion and the multipliers stay.
-#include "registry/factory.hpp"
 #include "run/scaled_equations.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 
 #include "controls/controls.hpp"
 #include "controls/wrapped_reference.hpp"
+#include "registry/factory.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
@@ -19,11 +19,6 @@
 
 namespace mbs {
 namespace {
-
-Variant reference() {
-  const std::vector<Variant> variants = test::controls().variants;
-  return *std::ranges::find(variants, "reference", &Variant::name);
-}
 
 TEST(ScaledEquations, BringTheDiagonalTogether) {
   ModelData data = four_bar(4);
@@ -53,9 +48,9 @@ TEST(ScaledEquations, LeaveEveryTermsMotionAndMultipliers) {
     settings.tolerance = 1e-15;
     settings.penalty = automatic_penalty(term.model, settings);
     const ScaledEquations scaled(term.model);
-    const auto plain = create_simulation(reference(), term.model, settings);
+    const auto plain = create_simulation(test::reference(), term.model, settings);
     settings.penalty = automatic_penalty(scaled.model(), settings);
-    const auto other = scaled.create(reference(), term.model, settings);
+    const auto other = scaled.create(test::reference(), term.model, settings);
     State state = initial_state(term.model), same = state;
     plain->set_state(state);
     other->set_state(state);
@@ -88,8 +83,9 @@ class Lasting final : public test::WrappedReference {
 
 TEST(ScaledEquations, OutliveAllSimulationsOfARun) {
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
-  Variant variant = reference();
-  variant.create = [](const Model& model, const StepSettings& settings) -> std::unique_ptr<Simulation> {
+  Variant variant = test::reference();
+  variant.create = [](const Model& model,
+                      const StepSettings& settings) -> std::unique_ptr<Simulation> {
     return std::make_unique<Lasting>(model, settings);
   };
   RunSettings settings;
@@ -105,10 +101,10 @@ TEST(ScaledEquations, OutliveAllSimulationsOfARun) {
 TEST(ScaledEquations, AreStepsOfTheJudgeToo) {
   static int plain = 0;
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/point_mass_pendulum.json");
-  Variant variant = reference();
+  Variant variant = test::reference();
   variant.create = [](const Model& model, const StepSettings& settings) {
     if (!model.dot_constraints().empty()) ++plain;
-    return reference().create(model, settings);
+    return test::reference().create(model, settings);
   };
   RunSettings settings;
   settings.duration = 0.1;
@@ -127,7 +123,7 @@ TEST(ScaledEquations, AreASettingOfARun) {
   settings.duration = 1.0;
   settings.scale_equations = true;
   settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
   EXPECT_LT(*summary.position_error_max, 1e-4);
 }

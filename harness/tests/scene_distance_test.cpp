@@ -57,8 +57,6 @@ TEST(LargestDistance, CountsPointsOfBodiesAndUnitVectors) {
 }
 
 RunSummary run_with_half_step(const Scene& scene, double step, double duration, double tolerance) {
-  const std::vector<Variant>& variants = test::controls().variants;
-  const auto reference = std::ranges::find(variants, "reference", &Variant::name);
   RunSettings settings;
   settings.duration = duration;
   settings.step.step = step;
@@ -67,7 +65,7 @@ RunSummary run_with_half_step(const Scene& scene, double step, double duration, 
   settings.half_step = settings.step;
   settings.half_step->step /= 2;
   settings.half_step->penalty = automatic_penalty(scene.model, *settings.half_step);
-  return run(scene, *reference, settings);
+  return run(scene, test::reference(), settings);
 }
 
 TEST(HalfStep, SeesBodiesWithoutFreePoints) {

@@ -36,6 +36,17 @@ Implementation implementation() {
           },
           .dense = true,
           .serves = {.terms = kTerms, .saddle_point = true},
+      }, {
+          .name = "potrs",
+          .description = "solves by dpotrs, which is made for many right-hand sides",
+          .create = [](const Model& model,
+                       const StepSettings& settings) -> std::unique_ptr<mbs::Simulation> {
+            require_storable(model, settings.scheme);
+            return std::make_unique<DenseSimulation<PotrsSystem>>(model, settings);
+          },
+          .dense = true,
+          .serves = {.terms = kTerms},
+          .tried_for = "potrf",
       }},
       .role = Role::paper,
   };

@@ -5,10 +5,11 @@
 
 namespace mbs::armadillo_dense {
 
-PenaltySystem::PenaltySystem(const Model& model, const StepSettings& settings)
+PenaltySystem::PenaltySystem(const Model& model, const StepSettings& settings,
+                             CholeskySolver::Solves solves)
     : Assembly(model, settings),
       alpha_(settings.penalty),
-      solver_(model.variables()),
+      solver_(model.variables(), solves),
       mu_(m_, arma::fill::zeros),
       rhs_(n_, arma::fill::zeros) {
   if (!model.linear_constraints().empty()) add_linear_constraints(model);

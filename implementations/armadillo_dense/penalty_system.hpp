@@ -16,7 +16,8 @@ namespace mbs::armadillo_dense {
 ///   ... system.solution() ...           // Δq
 class PenaltySystem : public Assembly {
  public:
-  PenaltySystem(const Model& model, const StepSettings& settings);
+  PenaltySystem(const Model& model, const StepSettings& settings,
+                CholeskySolver::Solves solves = CholeskySolver::Solves::trsv);
 
   /// Right-hand side of Eq. (4), with lambda (m).
   void residual(const arma::vec& x, const arma::vec& v, const arma::vec& a,
@@ -49,6 +50,13 @@ class PenaltySystem : public Assembly {
                         ///< without them
   arma::vec mu_;   ///< m, lambda + alpha Phi; then the first, then the second derivative of Phi
   arma::vec rhs_;  ///< n, right-hand side, then solution
+};
+
+/// The same with dpotrs.
+class PotrsSystem : public PenaltySystem {
+ public:
+  PotrsSystem(const Model& model, const StepSettings& settings)
+      : PenaltySystem(model, settings, CholeskySolver::Solves::potrs) {}
 };
 
 }  // namespace mbs::armadillo_dense

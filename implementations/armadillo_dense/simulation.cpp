@@ -130,6 +130,7 @@ void DenseSimulation<System>::project() {
 }
 
 template class DenseSimulation<PenaltySystem>;
+template class DenseSimulation<PotrsSystem>;
 template class DenseSimulation<SaddlePointSystem>;
 
 }  // namespace mbs::armadillo_dense

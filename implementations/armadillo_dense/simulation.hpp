@@ -38,6 +38,7 @@ class DenseSimulation final : public mbs::Simulation {
 };
 
 extern template class DenseSimulation<PenaltySystem>;
+extern template class DenseSimulation<PotrsSystem>;
 extern template class DenseSimulation<SaddlePointSystem>;
 
 }  // namespace mbs::armadillo_dense

@@ -30,10 +30,16 @@ bool CholeskySolver::factorize() {
 }
 
 void CholeskySolver::solve(arma::vec& b) const {
-  // dpotrs would do the same through dtrsm, which is made for many right-hand sides.
   const auto n = static_cast<blas_int>(T_.n_rows);
   const blas_int ld = std::max(n, 1);
   const blas_int stride = 1;
+  if (solves_ == Solves::potrs) {
+    char uplo = 'L';
+    blas_int size = n, height = ld, info = 0;
+    auto* L = const_cast<double*>(T_.memptr());  // which it only reads
+    arma::lapack::potrs(&uplo, &size, &stride, L, &height, b.memptr(), &height, &info);
+    return;
+  }
   arma_fortran(dtrsv)("L", "N", "N", &n, T_.memptr(), &ld, b.memptr(), &stride, 1, 1, 1);
   arma_fortran(dtrsv)("L", "T", "N", &n, T_.memptr(), &ld, b.memptr(), &stride, 1, 1, 1);
 }

@@ -12,8 +12,11 @@ namespace mbs::armadillo_dense {
 ///   solver.solve(b);                     // b <- T⁻¹ b
 class CholeskySolver {
  public:
+  /// How L is solved with: dtrsv twice, or dpotrs, which takes many right-hand sides.
+  enum class Solves { trsv, potrs };
+
   /// Storage for an n x n matrix.
-  explicit CholeskySolver(int n) : T_(n, n, arma::fill::zeros) {}
+  CholeskySolver(int n, Solves solves) : T_(n, n, arma::fill::zeros), solves_(solves) {}
 
   /// T (n x n), to be filled before factorize(), which overwrites its lower triangle with L.
   [[nodiscard]] arma::mat& matrix() { return T_; }
@@ -26,6 +29,7 @@ class CholeskySolver {
 
  private:
   arma::mat T_;
+  Solves solves_;
 };
 
 }  // namespace mbs::armadillo_dense

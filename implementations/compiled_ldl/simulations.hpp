@@ -20,7 +20,7 @@ std::unique_ptr<Simulation> create_small(const Model& model, const StepSettings&
 
 /// Many of one pattern at once, eight side by side in the lanes of a vector. Throws Unsupported
 /// unless the scheme is the default one in double precision, with lambda updated and the matrix,
-/// without geometric stiffness, factorized every pass, and no model has couples.
+/// without geometric stiffness, factorized every pass.
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings);
 

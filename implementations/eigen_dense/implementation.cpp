@@ -89,6 +89,12 @@ std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& 
   return create_in<double>(model, settings);
 }
 
+std::unique_ptr<mbs::Simulation> create_blocks(const Model& model, const StepSettings& settings) {
+  constexpr Eigen::Index kOwnLimit = 32;  // Eigen's
+  require_size(model, settings);
+  return std::make_unique<Simulation>(model, settings, kOwnLimit);
+}
+
 std::string eigen_version() {
   return std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
          std::to_string(EIGEN_MINOR_VERSION);
@@ -115,7 +121,13 @@ Implementation implementation() {
                                       .projections_every = true,
                                       .single_precision = true,
                                       .mixed_precision = true,
-                                      .geometric_stiffness = true}}};
+                                      .geometric_stiffness = true}},
+                          {.name = "llt_blocks",
+                           .description = "blocks from 33 variables on, as in Eigen's LLT",
+                           .create = create_blocks,
+                           .dense = true,
+                           .serves = {.terms = kTerms},
+                           .tried_for = "llt"}};
   description.role = Role::paper;
   return description;
 }

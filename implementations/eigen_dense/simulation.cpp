@@ -3,12 +3,12 @@
 
 namespace mbs::eigen_dense {
 
-Simulation::Simulation(const Model& model, const StepSettings& settings)
+Simulation::Simulation(const Model& model, const StepSettings& settings, Eigen::Index unblocked)
     : mbs::Simulation(model, settings),
       settings_(settings),
       layout_(model),
       assembly_(model, settings, layout_),
-      solver_(model.variables()),
+      solver_(model.variables(), unblocked),
       motion_(model, layout_),
       solution_(Eigen::VectorXd::Zero(model.variables())) {}
 

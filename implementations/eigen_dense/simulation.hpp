@@ -15,7 +15,9 @@ namespace mbs::eigen_dense {
 /// Penalty form, multipliers and tangent new in every pass, every step projected.
 class Simulation final : public mbs::Simulation {
  public:
-  Simulation(const Model& model, const StepSettings& settings);
+  /// `unblocked`: as Solver's.
+  Simulation(const Model& model, const StepSettings& settings,
+             Eigen::Index unblocked = kUnblockedLimit);
 
  private:
   void do_set_state(const State& state) override { motion_.set(state); }

@@ -6,20 +6,13 @@
 
 namespace mbs::eigen_dense {
 
-namespace {
-
-/// Up to here the unblocked kernel is the faster one; Eigen itself goes over to blocks at 32.
-constexpr Eigen::Index kUnblockedLimit = 128;
-
-}  // namespace
-
 // These kernels are what Eigen::LLT::compute() calls, without the norm that it evaluates first for
 // rcond(): 0.15 µs of 0.75 µs at n = 22.
 template <typename Scalar>
 bool Solver<Scalar>::factorize() {
   using Kernel = Eigen::internal::llt_inplace<Scalar, Eigen::Lower>;
   const Eigen::Index failed_column =
-      matrix_.rows() <= kUnblockedLimit ? Kernel::unblocked(matrix_) : Kernel::blocked(matrix_);
+      is_blocked_ ? Kernel::blocked(matrix_) : Kernel::unblocked(matrix_);
   // A NaN passes the kernel's test of its pivots, but then spreads to all later ones.
   return failed_column < 0 && std::isfinite(matrix_.diagonal().sum());
 }

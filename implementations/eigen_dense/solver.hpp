@@ -5,6 +5,9 @@
 
 namespace mbs::eigen_dense {
 
+/// Up to here Eigen's unblocked kernel is the faster one; Eigen itself goes over to blocks at 32.
+inline constexpr Eigen::Index kUnblockedLimit = 128;
+
 /// Owns the tangent matrix T (n×n). Only its lower triangle is read; factorize() overwrites that
 /// with L, T = L Lᵀ, so that T has to be written anew before every factorization.
 template <typename Scalar>
@@ -13,7 +16,11 @@ class Solver {
   using Vector = Eigen::VectorX<Scalar>;
   using Matrix = Eigen::MatrixX<Scalar>;
 
-  explicit Solver(Eigen::Index variables) : matrix_(variables, variables) { matrix_.setZero(); }
+  /// `unblocked`: up to how many variables the unblocked kernel is taken.
+  explicit Solver(Eigen::Index variables, Eigen::Index unblocked = kUnblockedLimit)
+      : matrix_(variables, variables), is_blocked_(variables > unblocked) {
+    matrix_.setZero();
+  }
 
   /// Where to write T (n×n, kg); L after factorize().
   Matrix& matrix() { return matrix_; }
@@ -27,6 +34,7 @@ class Solver {
 
  private:
   Matrix matrix_;
+  bool is_blocked_;
 };
 
 }  // namespace mbs::eigen_dense

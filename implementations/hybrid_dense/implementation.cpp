@@ -36,6 +36,15 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
                                 : create_in<3, Solver>(model, settings);
 }
 
+/// Eigen's blocks, penalty form.
+std::unique_ptr<Simulation> create_blocks(const Model& model, const StepSettings& settings) {
+  require_size(model, settings);
+  if (model.dimension() == 2) {
+    return std::make_unique<HybridSimulation<2, PenaltySystem<2, LltBlocksSolver>>>(model, settings);
+  }
+  return std::make_unique<HybridSimulation<3, PenaltySystem<3, LltBlocksSolver>>>(model, settings);
+}
+
 template <class Solver>
 Variant variant(const char* name, const char* description) {
   return {
@@ -54,13 +63,17 @@ Variant variant(const char* name, const char* description) {
 Implementation implementation() {
   Variant panels = variant<PanelsSolver>("panels", "own kernels in panel-major storage");
   panels.own_code = true;
+  Variant blocks = variant<LltSolver>("llt_blocks", "Eigen's kernels and block sizes");
+  blocks.create = create_blocks;
+  blocks.serves.saddle_point = false;
+  blocks.tried_for = "llt";
   return {.description = "sparse evaluation and scheduled assembly, dense Cholesky",
           .library = "Eigen, LAPACK",
           .version = library_versions(),
           .licence = "MPL-2.0, BSD-3-Clause",
           .variants = {variant<LltSolver>("llt", "Eigen's kernels, own block sizes"),
                        variant<PotrfSolver>("potrf", "LAPACK's dpotrf and dpotrs"),
-                       std::move(panels)}};
+                       std::move(panels), std::move(blocks)}};
 }
 
 }  // namespace mbs::hybrid_dense

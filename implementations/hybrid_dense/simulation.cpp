@@ -218,9 +218,11 @@ void HybridSimulation<D, System>::subtract_projection(Array& result) {
 }
 
 template class HybridSimulation<2, PenaltySystem<2, LltSolver>>;
+template class HybridSimulation<2, PenaltySystem<2, LltBlocksSolver>>;
 template class HybridSimulation<2, PenaltySystem<2, PotrfSolver>>;
 template class HybridSimulation<2, PenaltySystem<2, PanelsSolver>>;
 template class HybridSimulation<3, PenaltySystem<3, LltSolver>>;
+template class HybridSimulation<3, PenaltySystem<3, LltBlocksSolver>>;
 template class HybridSimulation<3, PenaltySystem<3, PotrfSolver>>;
 template class HybridSimulation<3, PenaltySystem<3, PanelsSolver>>;
 template class HybridSimulation<2, SaddleSystem<2, LltSolver>>;

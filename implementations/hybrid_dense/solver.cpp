@@ -60,6 +60,12 @@ bool LltSolver::factorize() {
   return factorize_halves(L) && is_positive();
 }
 
+bool LltBlocksSolver::factorize() {
+  copy();
+  Columns<Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  return Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(L) < 0 && is_positive();
+}
+
 void LltSolver::solve_lower(double* x) const {
   const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
   Eigen::Map<Eigen::VectorXd, kAlignment> solution(x, n_);

@@ -77,6 +77,13 @@ class LltSolver : public ColumnsSolver {
   void solve(double* x, long count, long stride) const;
 };
 
+/// Eigen's blocks.
+class LltBlocksSolver : public LltSolver {
+ public:
+  using LltSolver::LltSolver;
+  [[nodiscard]] bool factorize();
+};
+
 /// LAPACK's dpotrf and dpotrs.
 class PotrfSolver : public ColumnsSolver {
  public:

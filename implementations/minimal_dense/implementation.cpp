@@ -5,8 +5,7 @@
 
 namespace mbs::minimal_dense {
 
-// What is not named keeps its default. The one that matters is Variant::serves: planar distances, a
-// constant mass matrix, gravity and the paper's step. The harness refuses the rest before create().
+// Variant::serves keeps its default: planar distances, constant mass matrix, gravity, paper's step.
 Implementation implementation() {
   return {.description = "an example to read: the paper's step in plain loops, own Cholesky",
           .library = "none",
@@ -14,8 +13,8 @@ Implementation implementation() {
           .licence = "",
           .variants = {{.name = "loops",
                         .description = "an example to read: full matrices, each product a loop",
-                        .create = [](const Model& model, const StepSettings& settings)
-                            -> std::unique_ptr<Simulation> {
+                        .create = [](const Model& model,
+                                     const StepSettings& settings) -> std::unique_ptr<Simulation> {
                           return std::make_unique<LoopsSimulation>(model, settings);
                         },
                         .dense = true}},

@@ -1,7 +1,6 @@
 // The paper's step in plain loops; equations are those of paper/README.md. Start at do_step().
 #include "simulation.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mbs::minimal_dense {
@@ -9,8 +8,7 @@ namespace mbs::minimal_dense {
 LoopsSimulation::LoopsSimulation(const Model& model, const StepSettings& settings)
     : Simulation(model, settings), model_(model), settings_(settings) {
   for (const MassEntry& entry : model.mass()) {  // the model lists the lower half only
-    M_[entry.row * n_ + entry.col] = entry.value;
-    M_[entry.col * n_ + entry.row] = entry.value;
+    M_[entry.row * n_ + entry.col] = M_[entry.col * n_ + entry.row] = entry.value;
   }
 }
 
@@ -144,7 +142,7 @@ bool LoopsSimulation::correct() {
 
 // Eq. (6), with the last pass's L and Phi_q, solved for what it changes.
 void LoopsSimulation::project() {
-  std::ranges::fill(rate_, 0.0);  // Phi_t: nothing is driven
+  rate_.assign(m_, 0.0);  // Phi_t: nothing is driven
   project(v_);
   if (settings_.projections == Projections::velocity) return;
 

@@ -33,19 +33,16 @@ class LoopsSimulation final : public Simulation {
   const StepSettings settings_;
   const double dt_ = settings_.step, alpha_ = settings_.penalty;
   const long n_ = model_.variables(), m_ = model_.constraints();  // long: n_ * n_ is one, too
-
   // From predict() on, q_, v_ and a_ are the equations' q', v' and a'.
   State state_;
   Vector &q_ = state_.q, &v_ = state_.v, &a_ = state_.a, &lambda_ = state_.lambda;
-
   // Matrices are stored row by row, and all have rows of n: M_ij is M_[i * n_ + j].
   Vector M_ = Vector(n_ * n_);                        // both halves
   const std::span<const double> Q_ = model_.force();  // constant, as gravity is all there is
   Vector Phi_ = Vector(m_), Phi_q_ = Vector(m_ * n_);
-  Vector rate_ = Vector(m_);                          // of Phi or of its rate: Eq. (6)
   Vector T_ = Vector(n_ * n_), L_ = Vector(n_ * n_);  // lower halves; T = L L^T
   Vector Delta_q_ = Vector(n_);                       // -f, then the solution of Eq. (4)
-  Vector change_ = Vector(n_);                        // of v' or a', Eq. (6)
+  Vector rate_ = Vector(m_), change_ = Vector(n_);    // Eq. (6): of Phi or its rate; of v' or a'
 };
 
 }  // namespace mbs::minimal_dense

@@ -44,13 +44,13 @@ def run(lab, column):
             lab.skip(Cell("bench", natural.name, (Contender(one["folder"], one["folder"]),), role="unavailable"), "unavailable", one["reason"])
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])
     timed = [TimedScene(lab, natural, costs, own_fill)]
-    for scene in filled:
+    timed[0].time(lab.settings["processes"])
+    for scene in filled:  # one after the other: if the budget ends, the first ones have times
         if 100 * scene.fill <= own_fill:
             lab.skip(Cell("bench", scene.name, role="not-reached"), "not-reached", f"the mechanism's own fill is {own_fill:.3g} %")
         else:
             timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
-    for one in timed:
-        one.time(lab.settings["processes"])
+            timed[-1].time(lab.settings["processes"])
     _phases(lab, timed[0])  # what is small comes before `again`, which takes all that is left
     _operations(lab, natural)
     _seeds(lab, timed)

@@ -105,14 +105,13 @@ def test_what_is_shipped_is_small_and_whole(shipped):
     assert "<code>study/advise</code>" in front and "`" not in front
 
 
-def test_the_site_is_of_the_commit_that_the_rule_names_or_says_of_which(browser, shipped):
+def test_the_site_is_of_the_commit_that_the_rule_names(browser, shipped):
     commit = read_json(fragments.RULE)["commit"]
     assert commit[:10] in (shipped / "index.html").read_text(encoding="utf-8")
     browser.open(shipped / "explore.html")
     commits, machines = (browser.value(asked) for asked in (
         "DATA.sets.map((one) => one.commit)", "[...document.getElementById('machine').options].map((one) => one.text)"))
-    assert commits[0] == commit and len(machines) == len(commits)
-    assert [one[:10] in text for one, text in zip(commits, machines)] == [one != commit for one in commits]
+    assert {*commits} == {commit} and len(machines) == len(commits) >= 2
 
 
 def test_other_processors_are_shown_with_the_same_commit_where_there_is_one(tmp_path):

@@ -49,9 +49,8 @@ def test_readme_rule_and_paper_are_of_one_commit(known):
     rule = read_json(fragments.RULE)
     assert (rule["set"], rule["commit"]) == (known.folder.name, known.context["commit"])
     assert set(re.findall(r"results/([\w.+-]+)[/`]", readme)) - {"local"} == {known.folder.name}
-    for one in known.compared:  # those of another commit are shown with it
-        assert one.context["commit"] == known.compared[0].context["commit"]
-        assert known.together or all(one.context["commit"][:10] in text for text in (readme, artifact.FILE.read_text(encoding="utf-8")))
+    assert len(known.compared) >= 2 and all((one.context["commit"], one.facts["profile"]) == (rule["commit"], "full") for one in known.compared)
+    assert all(rule["commit"][:10] in text for text in (readme, artifact.FILE.read_text(encoding="utf-8")))
 
 
 def test_every_number_has_a_source_and_most_are_measured(found):
@@ -146,9 +145,9 @@ def names(sets):
 
 def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
     both = beside(second=ANOTHER)
-    assert list(audit.of_sets(both)) == [] and names(both.compared) == names(both.sets) == ["first", "second"] and both.together
+    assert list(audit.of_sets(both)) == [] and names(both.compared) == names(both.sets) == ["first", "second"]
     assert "Beside it, of the same build, to compare processors: `second`" in artifact._set(both)
-    assert "on 2 processors the same library is fastest" in fragments.fragment("cases")
+    assert f"on 2 processors (sets first, second, commit {both.context['commit'][:10]}) the same library is fastest" in fragments.fragment("cases")
     assert all(len(set(one.winners)) == 1 for one in both.agreed) and both.agreed
     count = numbers(both)
     assert count["machines.same"].text == count["machines.all"].text != "0" and count["machines.differ"].text == "0"
@@ -158,7 +157,7 @@ def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
 
 
 @pytest.mark.parametrize("context, said", [
-    (ANOTHER | OLD, "commit is '0000"), (ANOTHER | {"libraries": "Eigen 9"}, "libraries is 'Eigen 9'"),
+    (ANOTHER | {"libraries": "Eigen 9"}, "libraries is 'Eigen 9'"),
     (ANOTHER | {"dirty": "true"}, "tree with changes"), ({}, "a set of this build already")])
 def test_a_set_that_is_compared_with_none_is_refused(beside, context, said):
     other = beside(second=context)
@@ -169,31 +168,19 @@ def test_a_set_alone_is_compared_with_none(beside):
     alone = beside()
     assert alone.compared == [] and names(alone.sets) == ["first"] and "Beside" not in artifact._set(alone)
     claimed, count = artifact.judged(alone), numbers(alone)
-    assert [claimed[name][0] for name in ("compared", "together", "machines", "vector")] == [None] * 4
+    assert [claimed[name][0] for name in ("compared", "machines", "vector")] == [None] * 3
     assert "`study/merge SET SET`" in artifact._claims(alone, claimed) and count["machines.first"].text == NOT_MEASURED
     assert "first" in tables.machines(alone) and "Not measured" in tables.differs(alone) and "processors" not in fragments.fragment("cases")
 
 
-def test_where_the_main_set_has_none_beside_it_two_of_another_commit_are_compared(beside):
-    """As when one processor alone was measured anew: nothing that is said of it and nothing of the two is taken for the other."""
-    three = beside(old=OLD, other=ANOTHER | OLD)
-    assert names(three.compared) == ["old", "other"] and names(three.sets) == ["first", "old", "other"] and not three.together
-    assert not any("remove it" in line for line in audit.of_sets(three) if "machines are compared" in line)
-    claimed, count = artifact.judged(three), numbers(three)
-    assert claimed["compared"] == (True, "two or more; here old, other") and claimed["together"][0] is False and claimed["machines"][0]
-    assert (count["machines.first"].text, count["machines.commit"].text, count["set.name"].text) == ("old", "0" * 10, "first")
-    assert (count["machines.rate"].text, count["machines.count"].text) == ("1 on other", "2")
-    assert "first" not in tables.machines(three) and "old (0000000000)" in tables.claims(three)
-    assert "Beside it, of another build, commit `0000000000`, to compare processors: `old`" in artifact._set(three)
-    assert "`study/merge results/old results/other`" in artifact._claims(three, claimed) and "`other/raw/map" in artifact._archives(three)
-    assert set(audit.stamp(three)["tables"]) == {"first", "old", "other"}
-    assert "on 2 processors (sets old, other, commit 0000000000) the same library" in fragments.fragment("cases")
+def test_sets_of_another_commit_wait_for_their_turn(beside):
+    three = beside(newer=OLD, other=ANOTHER)
+    assert names(three.compared) == names(three.sets) == ["first", "other"] and list(audit.of_sets(three)) == []
 
 
-def test_a_set_of_the_main_commit_joins_by_itself(beside):
-    three = beside(old=OLD | ANOTHER, other=ANOTHER)
-    assert names(three.compared) == ["first", "other"] and three.together
-    assert any("results/old is of another build" in line for line in audit.of_sets(three))
+def test_a_set_of_another_commit_is_no_partner(beside):
+    alone = beside(newer=ANOTHER | OLD)
+    assert alone.compared == [] and artifact.judged(alone)["compared"][0] is None and list(audit.of_sets(alone)) == []
 
 
 def test_built_files_of_another_set_are_found(known, tmp_path, monkeypatch):

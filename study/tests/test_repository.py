@@ -31,6 +31,11 @@ def test_there_are_fewer_than_1800_files():
     assert len(TRACKED) < 1800
 
 
+def test_the_example_to_read_is_short():
+    sources = [ROOT / path for path in TRACKED if re.fullmatch(r"implementations/minimal_dense/\w+\.[ch]pp", path)]
+    assert len(sources) == 3 and sum(len(path.read_text(encoding="utf-8").splitlines()) for path in sources) <= 250
+
+
 def test_readmes_are_short():
     assert len((ROOT / "README.md").read_text().splitlines()) <= 70
     long = {path: count for path in TRACKED if path.endswith(".md")

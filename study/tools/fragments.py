@@ -37,16 +37,19 @@ def fragment(what):
 
 
 def _machines(main, others):
-    """The row that says what holds on several processors; none of one. Sets of another build than the main one are named."""
+    """The row that says what holds on several processors; none of one."""
     sets = agreement.compared(main, others)
     if not sets:
         return []
     count = agreement.shares(agreement.mechanisms(sets))
     names = ", ".join(one.folder.name for one in sets)
-    where = "" if sets[0] is main else f" (sets {names}, commit {sets[0].facts['context']['commit'][:10]})"
+    held = {one.folder.name: read_json(one.folder / "families" / RULE.name)["held"] for one in sets if one.folder != main.folder}
+    rules = "".join(f"; the rule made of {name}: {100 * one['mean_loss']:.1f} % slower on average, {100 * one['worst_loss']:.0f} % at worst"
+                    for name, one in held.items())
+    where = f" (sets {names}, commit {main.facts['context']['commit'][:10]})"
     return [{"case": "Your processor is another one",
              "take": f"what `build/mbs bench` names there; on {len(sets)} processors{where} the same library is fastest on {count['same']} of {count['all']} "
-                     f"mechanisms, on {count['common']} more one is nowhere shown to be over 5 % slower than the fastest, {count['differ']} differ"}]
+                     f"mechanisms, on {count['common']} more one is nowhere shown to be over 5 % slower than the fastest, {count['differ']} differ{rules}"}]
 
 
 def refresh():

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "model_math/connected_parts.hpp"
@@ -56,24 +57,26 @@ class Pattern {
   }
 
   /// The rows of the columns that `loose` leaves, in strongly connected groups: a row leads to
-  /// those whose columns it has [Tarjan, 1972].
+  /// those whose columns it has [Tarjan, 1972]. A group comes after those that its rows lead to.
   [[nodiscard]] Lists groups(const std::vector<bool>& loose) const {
     Lists result;
     std::vector<int> index(cols_of_.size(), -1), low(index), path;
     std::vector<bool> on_path(index.size(), false);
+    std::vector<std::pair<int, std::size_t>>
+        open;  // a row, its next column: no recursion over chains
     int count = 0;
-    const std::function<void(int)> visit = [&](int row) {
-      const auto r = at(row);
-      index[r] = low[r] = count++;
+    const auto begin = [&](int row) {
+      index[at(row)] = low[at(row)] = count++;
       path.push_back(row);
-      on_path[r] = true;
-      for (const int col : cols_of_[r]) {
-        const int next = row_of_[at(col)];
-        if (next < 0 || next == row) continue;
-        if (index[at(next)] < 0) visit(next);
-        if (on_path[at(next)]) low[r] = std::min(low[r], low[at(next)]);
+      on_path[at(row)] = true;
+      open.emplace_back(row, 0);
+    };
+    const auto end = [&](int row) {
+      if (!open.empty()) {
+        int& before = low[at(open.back().first)];
+        before = std::min(before, low[at(row)]);
       }
-      if (low[r] != index[r]) return;
+      if (low[at(row)] != index[at(row)]) return;
       result.emplace_back();
       for (int top = -1; top != row;) {
         top = path.back();
@@ -82,8 +85,24 @@ class Pattern {
         result.back().push_back(top);
       }
     };
-    for (int row = 0; row < static_cast<int>(cols_of_.size()); ++row) {
-      if (is_tight(row, loose) && index[at(row)] < 0) visit(row);
+    for (int first = 0; first < static_cast<int>(cols_of_.size()); ++first) {
+      if (is_tight(first, loose) && index[at(first)] < 0) begin(first);
+      while (!open.empty()) {
+        const int row = open.back().first;
+        const std::size_t place = open.back().second++;
+        if (place == cols_of_[at(row)].size()) {
+          open.pop_back();
+          end(row);
+          continue;
+        }
+        const int next = row_of_[at(cols_of_[at(row)][place])];
+        if (next < 0 || next == row) continue;
+        if (index[at(next)] < 0) {
+          begin(next);
+        } else if (on_path[at(next)]) {
+          low[at(row)] = std::min(low[at(row)], index[at(next)]);
+        }
+      }
     }
     return result;
   }
@@ -138,18 +157,22 @@ class Pattern {
     return result;
   }
 
-  [[nodiscard]] bool is_tight(int row, const std::vector<bool>& loose) const {
-    return col_of_[at(row)] >= 0 && !loose[at(col_of_[at(row)])];
-  }
-  [[nodiscard]] std::size_t tight_rows(const std::vector<bool>& loose) const {
-    std::size_t count = 0;
-    for (int row = 0; row < static_cast<int>(cols_of_.size()); ++row) count += is_tight(row, loose);
-    return count;
-  }
   [[nodiscard]] int col_of(int row) const { return col_of_[at(row)]; }
+  /// The rows whose columns a row has.
+  [[nodiscard]] std::vector<int> rows_needed(int row) const {
+    std::vector<int> result;
+    for (const int col : cols_of_[at(row)]) {
+      if (row_of_[at(col)] >= 0) result.push_back(row_of_[at(col)]);
+    }
+    return result;
+  }
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+  [[nodiscard]] bool is_tight(int row, const std::vector<bool>& loose) const {
+    return col_of_[at(row)] >= 0 && !loose[at(col_of_[at(row)])];
+  }
 
   bool augment(int row, std::vector<int>& seen) {
     // Depth first, without recursion over whole chains: breadth first with parents.
@@ -193,6 +216,48 @@ ConstraintBlock sorted(ConstraintBlock block) {
   return block;
 }
 
+/// The groups of `rows` rows, each with those that it needs; without those that need more than
+/// `most` rows.
+std::vector<ClosedParts::Driven> driven_parts(const Pattern& pattern, const Lists& groups, int rows,
+                                              std::size_t most) {
+  std::vector<ClosedParts::Driven> result;
+  std::vector<std::size_t> group_of(static_cast<std::size_t>(rows));
+  std::vector<std::set<std::size_t>> needed(groups.size());  // itself too; empty: too many rows
+  std::vector<ConstraintBlock> blocks;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    ConstraintBlock& block = blocks.emplace_back();
+    for (const int row : groups[g]) {
+      group_of[static_cast<std::size_t>(row)] = g;
+      block.rows.push_back(row);
+      block.cols.push_back(pattern.col_of(row));
+    }
+    block = sorted(std::move(block));
+    std::set<std::size_t> mine{g};
+    bool is_known = true;
+    for (const int row : groups[g]) {
+      for (const int other : pattern.rows_needed(row)) {
+        const std::size_t its = group_of[static_cast<std::size_t>(other)];
+        if (its == g) continue;
+        if (needed[its].empty()) is_known = false;
+        mine.insert(needed[its].begin(), needed[its].end());
+      }
+    }
+    std::size_t count = 0;
+    for (const std::size_t its : mine) count += blocks[its].rows.size();
+    if (!is_known || count > most) continue;
+    ClosedParts::Driven& driven = result.emplace_back();
+    driven.block = block;
+    for (const std::size_t its : mine) {
+      driven.needed.push_back(blocks[its]);
+      std::ranges::copy(blocks[its].rows, std::back_inserter(driven.all.rows));
+      std::ranges::copy(blocks[its].cols, std::back_inserter(driven.all.cols));
+    }
+    driven.all = sorted(std::move(driven.all));
+    needed[g] = std::move(mine);
+  }
+  return result;
+}
+
 }  // namespace
 
 ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int largest) {
@@ -214,28 +279,21 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
   for (int col = 0; col < cols; ++col) result.passes_on.push_back(freedoms[part_of(col)] > 1);
   if (rows == 0 || !rank) return result;
   result.freedoms = cols - rank->rank;
-  result.has_redundant_rows = !rank->dependent.empty();
   Pattern pattern(rows, cols);
+  std::vector<bool> has_redundant(freedoms.size());
   for (const JacobianEntry& entry : entries) {
-    if (!std::ranges::binary_search(rank->dependent, entry.row)) pattern.add(entry.row, entry.col);
+    if (std::ranges::binary_search(rank->dependent, entry.row)) {
+      has_redundant[part_of(entry.col)] = true;
+    } else {
+      pattern.add(entry.row, entry.col);
+    }
   }
+  for (int col = 0; col < cols; ++col)
+    result.has_redundant_rows.push_back(has_redundant[part_of(col)]);
   pattern.match();
   const auto loose = pattern.loose();
   const auto most = static_cast<std::size_t>(largest);
-  if (is_driven(model)) {
-    if (pattern.tight_rows(loose) > most) return result;
-    for (const auto& group : pattern.groups(loose)) {
-      ConstraintBlock block;
-      for (const int row : group) {
-        block.rows.push_back(row);
-        block.cols.push_back(pattern.col_of(row));
-        result.driven.rows.push_back(row);
-        result.driven.cols.push_back(pattern.col_of(row));
-      }
-      result.blocks.push_back(sorted(std::move(block)));
-    }
-    result.driven = sorted(std::move(result.driven));
-  }
+  if (is_driven(model)) result.driven = driven_parts(pattern, pattern.groups(loose), rows, most);
   pattern.take_off_hanging();
   std::vector<bool> has_loop(freedoms.size());
   for (ConstraintBlock& piece : pattern.pieces(loose)) {

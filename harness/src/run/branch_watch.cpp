@@ -59,16 +59,17 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   ClosedParts parts = closed_parts(scene.model, start.q, kLargestPart);
   freedoms_ = parts.freedoms;
   passes_on_ = std::move(parts.passes_on);
-  has_redundant_rows_ = parts.has_redundant_rows;
+  has_redundant_rows_ = std::move(parts.has_redundant_rows);
   std::vector<ConstraintBlock> matrices;
-  if (!parts.driven.rows.empty()) {
-    add_part(std::move(parts.driven), std::move(parts.blocks), matrices);
+  for (ClosedParts::Driven& part : parts.driven) {
+    matrices.push_back(std::move(part.block));
+    parts_.push_back({std::move(part.all), std::move(part.needed)});
   }
   const bool is_driven =
       !scene.model.driven_points().empty() || !scene.model.driven_values().empty();
   for (ConstraintBlock& part : parts.free) {
-    add_part(std::move(part), {}, matrices);
-    parts_.back().is_carried = is_driven;
+    matrices.push_back(part);
+    parts_.push_back({std::move(part), {}, is_driven});
   }
   if (!is_needed()) return;
   matrices_.emplace(scene.model, std::move(matrices));
@@ -78,14 +79,6 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   find_tangents(start);
   find_signs(0.0, start);
   moor(0.0, start);
-}
-
-void BranchWatch::add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks,
-                           std::vector<ConstraintBlock>& matrices) {
-  for (const ConstraintBlock& block : blocks) matrices.push_back(block);
-  if (blocks.empty()) matrices.push_back(all);
-  part_of_.resize(matrices.size(), parts_.size());
-  parts_.push_back({std::move(all), std::move(blocks)});
 }
 
 /// Of the parts that are carried.
@@ -228,7 +221,7 @@ std::string BranchWatch::look(double t, const State& state) {
     // Nobody can tell on which branch it is: the anchor stays where that is known.
     if (now_[m] == 0 && anchor_signs_[m] != 0) is_certain = false;
     if (now_[m] * anchor_signs_[m] >= 0) continue;
-    const Part& part = parts_[part_of_[m]];
+    const Part& part = parts_[m];
     const std::optional<FollowedCurve> followed = follow(part, t, state);
     const auto lost = [&] {
       return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t,
@@ -246,7 +239,8 @@ std::string BranchWatch::look(double t, const State& state) {
         if (!curve.crossed && (!part.blocks.empty() || curve.distance > kSame * length_)) {
           is_certain = false;
         }
-        if (curve.crossed && passage_.empty() && !has_redundant_rows_) {
+        if (curve.crossed && passage_.empty() &&
+            !has_redundant_rows_[static_cast<std::size_t>(part.all.cols.front())]) {
           passage_ =
               fmt::format("a singular position of {} was passed before t = {:g} s", place_of(m), t);
         }

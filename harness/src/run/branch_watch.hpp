@@ -48,39 +48,35 @@ class BranchWatch {
   [[nodiscard]] const std::string& doubt() const { return doubt_.empty() ? pending_ : doubt_; }
 
  private:
+  /// What is followed where a determinant changes its sign.
   struct Part {
     ConstraintBlock all;
     std::vector<ConstraintBlock> blocks;  // empty: one freedom
     bool is_carried = false;              // one freedom, beside drivers
   };
-  void add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks,
-                std::vector<ConstraintBlock>& matrices);
   /// Into now_: -1, 1; 0: not known.
   void find_signs(double t, const State& state);
   [[nodiscard]] std::string place_of(std::size_t matrix) const;
   [[nodiscard]] double turned(const ConstraintBlock& block, const State& state) const;
-  [[nodiscard]] bool is_carried(std::size_t matrix) const {
-    return parts_[part_of_[matrix]].is_carried;
-  }
+  [[nodiscard]] bool is_carried(std::size_t matrix) const { return parts_[matrix].is_carried; }
   void find_tangents(const State& start);
   [[nodiscard]] std::optional<FollowedCurve> follow(const Part& part, double t,
                                                     const State& state) const;
   void moor(double t, const State& state);
 
   const Scene& scene_;
-  double length_;  // m
-  std::vector<Part> parts_;
-  std::vector<std::size_t> part_of_;  // of each determinant
-  std::optional<BlockJacobian> matrices_;
-  std::vector<double> eliminated_;  // of one, to work in
-  std::vector<double> turned_;      // of each with one freedom, as of find_signs()
+  double length_;                          // m
+  std::vector<Part> parts_;                // of each determinant
+  std::optional<BlockJacobian> matrices_;  // whose determinants these are
+  std::vector<double> eliminated_;         // of one, to work in
+  std::vector<double> turned_;             // of each with one freedom, as of find_signs()
   State anchor_;
   double anchor_time_ = 0.0;             // s
   std::vector<int> anchor_signs_, now_;  // as of find_signs()
   // Velocities as they were directed when signs were first known; of a part that is carried, the
   // direction that its constraints leave, unit length.
   std::vector<double> tangent_;
-  bool has_redundant_rows_ = false;
+  std::vector<bool> has_redundant_rows_;  // as ClosedParts
   int freedoms_ = 0;
   std::vector<bool> passes_on_;
   int uncertain_ = 0;                      // looks since the anchor that could not tell

@@ -90,8 +90,9 @@ void JudgedRun::take(const StepOutcome& outcome) {
   if (outcome.status == StepStatus::factorization_failed) {
     judge_samples();
     if (is_over_) return;
-    const std::string why = "the tangent matrix could not be factorized";
-    if (!locate_loss(why, step)) lose(RunStatus::diverged, why + hint(), time(step));
+    if (!locate_loss(kNotFactorized, step)) {
+      lose(RunStatus::diverged, kNotFactorized + hint(), time(step));
+    }
     return;
   }
   if (half_) half_->advance();
@@ -294,15 +295,14 @@ void JudgedRun::conclude() {
                                   100 * RunBounds{}.pass_limit_share);
     return;
   }
-  summary_.reason = judge_.degradation();
-  const std::string estimated = beyond_estimates();
-  if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
-  summary_.reason += estimated;
   const auto add = [this](const std::string& reason) {
-    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += ", ";
+    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += "; ";
     summary_.reason += reason;
   };
+  add(judge_.degradation());
+  add(beyond_estimates());
   add(watch_.doubt());
+  if (!summary_.reason.empty()) summary_.reason += ": a shorter step may help";
   const auto is_force = [](const Output& output) {
     return output.kind == Output::Kind::constraint_force;
   };
@@ -335,8 +335,8 @@ std::string JudgedRun::beyond_estimates() const {
   }
   const double local_allowed = AccurateBounds{}.local_error * judge_.length();
   if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
-  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step",
-                     *summary_.local_error_sum, local_allowed);
+  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g})", *summary_.local_error_sum,
+                     local_allowed);
 }
 
 RunSummary JudgedRun::finish() {

@@ -56,6 +56,7 @@ class JudgedRun {
   [[nodiscard]] RunSummary finish();
 
  private:
+  static inline const std::string kNotFactorized = "the tangent matrix could not be factorized";
   /// A step that is to be judged, and the one before it.
   struct Sample {
     long step;

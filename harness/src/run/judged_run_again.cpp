@@ -50,7 +50,7 @@ void JudgedRun::catch_up() {
   Simulation& simulation = access_.again();
   for (long i = *set_back_ + 1; i <= summary_.steps && !is_over_; ++i) {
     if (simulation.step().status != StepStatus::factorization_failed) continue;
-    lose(RunStatus::diverged, "the tangent matrix could not be factorized" + hint(), time(i));
+    lose(RunStatus::diverged, kNotFactorized + hint(), time(i));
   }
   set_back_.reset();
 }

@@ -49,12 +49,14 @@ class BatchLane {
   void begin() {
     batch_.set_state(index_, start_);
     guard([this] {
-      judged_.begin({[this](State& state) { batch_.get_state(index_, state); },
-                     [this]() -> Simulation& { return again(); },
-                     [this](const StepSettings& step) {
-                       return create_simulation(variant_, lane_.scene.model, step);
-                     },
-                     &lane_.scene.model, true});
+      judged_.begin({.get_state = [this](State& state) { batch_.get_state(index_, state); },
+                     .again = [this]() -> Simulation& { return again(); },
+                     .create =
+                         [this](const StepSettings& step) {
+                           return create_simulation(variant_, lane_.scene.model, step);
+                         },
+                     .model = &lane_.scene.model,
+                     .is_again_another = true});
     });
   }
   void take(const StepOutcome& outcome) {

@@ -18,11 +18,11 @@ Implementation controls() {
   return result;
 }
 
-Variant reference() {
-  for (const Variant& variant : controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
+Variant control(const std::string& name) {
+  const std::vector<Variant> variants = controls().variants;
+  const auto found = std::ranges::find(variants, name, &Variant::name);
+  if (found == variants.end()) throw std::invalid_argument("no control is called " + name);
+  return *found;
 }
 
 }  // namespace mbs::test

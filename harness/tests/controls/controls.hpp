@@ -1,6 +1,8 @@
 // Simulations with one defect each: what the gate must reject, and one that it must accept.
 #pragma once
 
+#include <string>
+
 #include "mbs/implementation.hpp"
 
 namespace mbs::test {
@@ -9,7 +11,10 @@ namespace mbs::test {
 /// the stated defect, so that nothing else can be what the gate objects to.
 Implementation controls();
 
+/// One of them. Throws std::invalid_argument if none has the name.
+Variant control(const std::string& name);
+
 /// The one of them that has no defect.
-Variant reference();
+inline Variant reference() { return control("reference"); }
 
 }  // namespace mbs::test

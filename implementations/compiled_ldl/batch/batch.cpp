@@ -50,10 +50,6 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
         "batches are for the penalty form in double precision, multipliers and tangent of every "
         "pass, no geometric stiffness");
   }
-  // Constant torques drive through singular positions again and again, where rounding decides how
-  // many passes a step takes: lanes would differ from simulations alone by more than rounding.
-  if (!models.front()->couples().empty())
-    throw Unsupported("batches are for models without couples");
   if (models.front()->dimension() == 2) return std::make_unique<Batch<2>>(models, settings);
   return std::make_unique<Batch<3>>(models, settings);
 }

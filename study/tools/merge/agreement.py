@@ -48,16 +48,12 @@ def contexts(studyset):
 
 
 def compared(first, others):
-    """Of a set and others those that processors are compared by: `first` with one of its build from each other processor; where there
-    is none, the first of `others` that has such; [] if none has."""
-    for base in (first, *others):
-        found = {base.facts["context"]["cpu_model"]: base}
-        for one in others:
-            if not unlike(base, one):
-                found.setdefault(one.facts["context"]["cpu_model"], one)
-        if len(found) > 1:
-            return [*found.values()]
-    return []
+    """Of a set and others those that processors are compared by: `first` with one of its build from each other processor; [] if there is none."""
+    found = {first.facts["context"]["cpu_model"]: first}
+    for one in others:
+        if not unlike(first, one):
+            found.setdefault(one.facts["context"]["cpu_model"], one)
+    return [*found.values()] if len(found) > 1 else []
 
 
 def questions(studyset):

@@ -7,7 +7,8 @@ from analysis.core import records, schema
 from analysis.core.controls import judged
 from analysis.core.files import read_object
 
-RATES = {"flops_per_ns": "multiply-adds in the widest vectors, operations a ns", "divisions_per_ns": "divisions in the widest vectors, a ns",
+RATES = {"vector_bytes": "widest vectors of the build, bytes", "flops_per_ns": "multiply-adds in the widest vectors, operations a ns",
+         "divisions_per_ns": "divisions in the widest vectors, a ns",
          "add_ns": "latency of an addition, ns", "fused_ns": "latency of a multiply-add, ns", "divide_ns": "latency of a division, ns",
          "L1": "loads and stores in L1, bytes a ns", "L2": "in L2", "L3": "in L3", "memory": "in memory"}
 

@@ -1,11 +1,15 @@
 # study/merge SET SET …: which winners and equivalence sets hold on all machines, which depend on the processor.
+import base64
+
+import matplotlib.pyplot as plt
 import pandas
 
 from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.site import template
+from analysis.core.style import save
 from study.core.options import Parser, directory
 from study.core.studyset import opened
-from study.tools.merge import agreement, machine
+from study.tools.merge import agreement, figure, machine
 
 ORDER = {"differs": 0, "several": 1, "decided": 2}  # of rows: what a reader looks for comes first
 
@@ -38,13 +42,14 @@ def merge(arguments):
     found = agreement.held(agreed, fresh) if fresh else {}
     options.to.mkdir(parents=True, exist_ok=True)
     write_text(options.to / "agreement.csv", table.to_csv(index=False))
+    libraries = agreement.mechanisms(sets, agreed)
     about = [{"label": label, "facts": one.facts, "rates": machine.rates(one), "controls": machine.controls(one)} for label, one in zip(machines, sets)]
     write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
         machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
-        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(agreement.mechanisms(sets, agreed)),
-        claims=machine.claims(sets)))
+        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(libraries),
+        claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
     for layer, count in counts.items():
         print(f"{agreement.LAYERS[layer]}: {sum(count.values())} common cells, {count['decided']} with one winner everywhere, "
               f"{count['several']} with several, {count['differs']} differ by machine")
@@ -55,6 +60,17 @@ def merge(arguments):
         print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
     print(f"page: {options.to / 'index.html'}")
     return 0
+
+
+def _drawn(libraries, sets, path):
+    """The picture's file in base 64; None without mechanisms."""
+    if not libraries:
+        return None
+    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene")
+    drawn = figure.mechanisms(libraries, features.reindex([one.question.scene for one in libraries]), sets[0].registry)
+    save(drawn, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
+    plt.close(drawn)
+    return base64.b64encode(path.read_bytes()).decode()
 
 
 def _said(agreed, machines):

@@ -41,13 +41,8 @@ def told(known):
 
 def _set(known):
     first, *others = (f"`{one.folder.name}` of {one.facts['date'][:10]}, {one.context['cpu_model']}" for one in known.sets)
-    commits = [f"`{one.context['commit'][:10]}`" for one in known.sets]
-    text = f"Set {first}, commit {commits[0]}."
-    if known.together:
-        text += f" Beside it, of the same build, to compare processors: {'; '.join(others)}."
-    elif known.compared:
-        text += f" Beside it, of another build, commit {commits[1]}, to compare processors: {'; '.join(others)}."
-    return text + "\n"
+    beside = f" Beside it, of the same build, to compare processors: {'; '.join(others)}." if others else ""
+    return f"Set {first}, commit `{known.context['commit'][:10]}`.{beside}\n"
 
 
 def _claims(known, claimed):

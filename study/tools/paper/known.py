@@ -35,15 +35,13 @@ class Known(Folder):
 
     @cached_property
     def compared(self):
-        """The sets that processors are compared by: this one and those of its build, or, without any, sets of another build."""
+        """The sets that processors are compared by: this one and those of its build; [] if it is alone."""
         return agreement.compared(self, self.stored)
-
-    together = property(lambda self: self in self.compared)
 
     @property
     def sets(self):
         """All that the paper is of: this one, and those beside it that are compared."""
-        return [self, *(one for one in self.compared if one != self)]
+        return self.compared or [self]
 
     @cached_property
     def agreed(self):

@@ -3,6 +3,7 @@
 import math
 from collections import defaultdict, namedtuple
 
+import pandas
 from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
@@ -238,8 +239,14 @@ def _rule(known):
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
     return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
                 families=one["families"], scenes=one["scenes"]) | {
-        "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
+        "elsewhere": _elsewhere(known.compared[1:]), "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
+
+
+def _elsewhere(others):
+    """The worst loss of the rules that other sets give."""
+    held = pandas.concat([one.tables("families")["held"] for one in others]) if others else pandas.DataFrame()
+    return of_rows(percent(held.loss.max()), "families/held", held.nlargest(1, "loss")) if len(held) else None
 
 
 def _default(rows):
@@ -259,9 +266,9 @@ def _window(known):
     largest = rows.nlargest(1, "loops")
     found = each("stability/windows", largest, **{name: number(largest[name].max()) for name in ("loops", "lower", "upper")})
     tried = maps[(maps.penalty_asked != "auto") & (maps.precision == "double") & (maps.scheme == "penalty") & (maps.status != "dropped")]
-    number_tried, good = tried.groupby(["loops", "step"]).status.count(), (tried.status == "ok").groupby([tried.loops, tried.step]).sum()
-    good = good[number_tried == number_tried.max()]  # of the largest size the budget may leave out some
-    found |= each("stability/maps", tried, tried=number_tried.max(), good_least=good.min(), good_most=good.max())
+    cells = tried.assign(good=tried.status == "ok").groupby(["loops", "step"]).good.agg(["count", "sum"])
+    good = cells["sum"][cells["count"] == cells["count"].max()]  # of the largest size the budget may leave out some
+    found |= each("stability/maps", tried, tried=cells["count"].max(), good_least=good.min(), good_most=good.max())
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
     for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
         mine = automatic[automatic.scheme == scheme]

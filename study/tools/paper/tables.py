@@ -98,13 +98,12 @@ def ranking(known):
 
 
 def claims(known):
-    """The claims of 2008, with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those without."""
-    beside = {one.folder.name + ("" if known.together else f" ({one.context['commit'][:10]})"): one.tables("map")["claims"].set_index(["id", "claim"])
-              for one in known.sets[1:]}
+    """The claims of 2008, with theirs, ours in each set and the verdict; below, those without."""
+    beside = {one.folder.name: one.tables("map")["claims"].set_index(["id", "claim"]) for one in known.sets[1:]}
     rows, without = [], {}
     for row in known.tables("map")["claims"].itertuples():
         theirs = [its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None for its in beside.values()]
-        verdicts = [row.verdict, *(one.verdict for one in theirs if known.together and one is not None)]
+        verdicts = [row.verdict, *(one.verdict for one in theirs if one is not None)]
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
             without.setdefault((row.id, row.reason), []).append(row.claim)
         else:
@@ -143,7 +142,7 @@ def _machine(one):
             "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
             "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
             "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
-        text: number(measured.get(name)) for name, text in machine.RATES.items() if name not in ("L2", "L3")}
+        text: number(measured.get(name)) for name, text in machine.RATES.items() if name in measured and name not in ("L2", "L3")}
 
 
 def differs(known):

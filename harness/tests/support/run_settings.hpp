@@ -1,0 +1,18 @@
+// The settings of a run that nobody chose by hand.
+#pragma once
+
+#include "run/run.hpp"
+#include "run/settings.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs::test {
+
+/// Of `duration` (s), with the automatic penalty factor.
+inline RunSettings automatic_settings(const Scene& scene, double duration) {
+  RunSettings settings;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.duration = duration;
+  return settings;
+}
+
+}  // namespace mbs::test
