@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy
 
 NUMBERS = {"penalty": ("dense", "per_column"), "saddle-point": ("saddle_dense", "saddle_per_column")}
-SHOWN = ("dense", "per_column", "saddle_dense", "saddle_per_column")
+SHOWN = sum(NUMBERS.values(), ())
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 
@@ -14,16 +14,12 @@ def table(data, rests, rule, worth):
     """A row a case. data, rule, rests: of rule.py, {family: the rule without its times}; worth: of the mean cost, that one more case must save."""
     for scheme, losses in data.losses.items():
         features, weights = data.features.loc[losses.index], data.weights(losses.index)
-
-        def cases_of(known, scheme=scheme, features=features, weights=weights):
-            return _cases(known.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth)
-
         chosen = {}
         for family, rest in rests.items():
             left = features[[data.family[scene] == family for scene in features.index]]
-            for where, name in cases_of(rest):
+            for where, name in _cases_of(rest, scheme, features, weights, worth):
                 chosen |= dict.fromkeys(_inside(where, left), name)
-        for where, name in cases_of(rule):
+        for where, name in _cases_of(rule, scheme, features, weights, worth):
             scenes = _inside(where, features)
             found = numpy.array([losses.loc[scene, chosen[scene]] for scene in scenes])
             known = found[~numpy.isnan(found)]
@@ -58,6 +54,10 @@ def _round(least, most):
     """About the middle, in the fewest digits that part the two: least < it <= most; None if two are not enough for that."""
     middles = (float(f"{(least * most) ** 0.5:.{digits}g}") for digits in (1, 2))
     return next((middle for middle in middles if least < middle <= most), None)
+
+
+def _cases_of(rule, scheme, features, weights, worth):
+    return _cases(rule.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth)
 
 
 def _cases(costs, features, worth):

@@ -16,7 +16,7 @@ def context(tables, view):
     lost = {}
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
-    held, decided = tables["held"], tables["winners"][(tables["winners"].layer == "libraries") & tables["winners"].decided.fillna(False).astype(bool)]
+    held, decided = tables["held"], winners[(winners.layer == "libraries") & winners.decided.fillna(False).astype(bool)]
     return {"settings": view.settings, "ranked": ranked, "controls": judged(tables["controls"]), "bounds": bounds(tables),
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],

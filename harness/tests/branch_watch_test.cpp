@@ -144,10 +144,8 @@ TEST(BranchWatch, SaysThatASingularPositionWasPassedWhateverIsRedundantElsewhere
       scene["rods"].push_back({{"name", "along"}, {"between", {"P", "R"}}, {"mass", 1}});
     }
     const Scene loaded = scene_of(scene, "test");
-    RunSettings settings = test::automatic_settings(loaded, 2.0);
-    settings.half_step = settings.step;
-    settings.half_step->step /= 2;
-    settings.half_step->penalty = automatic_penalty(loaded.model, *settings.half_step);
+    const RunSettings settings =
+        test::with_half_step(loaded, test::automatic_settings(loaded, 2.0));
     const RunSummary summary = run(loaded, test::reference(), settings);
     EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
     EXPECT_NE(summary.reason.find("singular position"), std::string::npos) << summary.reason;
@@ -157,15 +155,10 @@ TEST(BranchWatch, SaysThatASingularPositionWasPassedWhateverIsRedundantElsewhere
 TEST(BranchWatch, LetsALoopPassItsSingularPositions) {
   Scene scene = load_scene("four-bar:1");
   scene.four_bar_loops.reset();  // as if nothing were known of it
-  RunSettings settings;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step);
-  settings.duration = 2.0;
+  const RunSettings settings = test::automatic_settings(scene, 2.0);
   const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
-  settings.half_step = settings.step;
-  settings.half_step->step /= 2;
-  settings.half_step->penalty = automatic_penalty(scene.model, *settings.half_step);
-  const RunSummary estimated = run(scene, test::reference(), settings);
+  const RunSummary estimated = run(scene, test::reference(), test::with_half_step(scene, settings));
   EXPECT_EQ(estimated.status, RunStatus::plausible) << estimated.reason;
   EXPECT_NE(estimated.reason.find("singular position"), std::string::npos) << estimated.reason;
 }

@@ -20,6 +20,16 @@
 namespace mbs {
 namespace {
 
+template <class Kind>
+Variant variant_of() {
+  Variant variant = test::reference();
+  variant.create = [](const Model& model,
+                      const StepSettings& settings) -> std::unique_ptr<Simulation> {
+    return std::make_unique<Kind>(model, settings);
+  };
+  return variant;
+}
+
 /// A point at rest; copying its state out takes a tenth of a millisecond.
 class SlowToCopy final : public Simulation {
  public:
@@ -46,11 +56,7 @@ TEST(JudgedRun, CountsTheCopiesThatJudgingNeedsWhoeverElseLooks) {
   data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
   data.force = data.initial_velocity = {0.0, 0.0};
   const Scene scene{"at rest", Model(std::move(data)), {}, {}};
-  Variant variant = test::reference();
-  variant.create = [](const Model& model,
-                      const StepSettings& settings) -> std::unique_ptr<Simulation> {
-    return std::make_unique<SlowToCopy>(model, settings);
-  };
+  const Variant variant = variant_of<SlowToCopy>();
   RunSettings settings = test::automatic_settings(scene, 0.5);
   settings.step.tolerance = 1e-15;
   settings.judge_every = 20;
@@ -119,11 +125,7 @@ TEST(JudgedRun, GoesOnFromWhereItIsAfterAFalseAlarm) {
   data.force = {0.0, -10.0};
   data.initial_velocity = {0.1, 0.0};
   const Scene scene{"dips", Model(std::move(data)), {}, {}};
-  Variant variant = test::reference();
-  variant.create = [](const Model& model,
-                      const StepSettings& settings) -> std::unique_ptr<Simulation> {
-    return std::make_unique<Dipping>(model, settings);
-  };
+  const Variant variant = variant_of<Dipping>();
   RunSettings settings = test::automatic_settings(scene, 10.0);
   settings.step.tolerance = 1e-15;  // no step is done again
   const RunSummary summary = run(scene, variant, settings);

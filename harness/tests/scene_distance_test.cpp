@@ -12,6 +12,7 @@
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/run_settings.hpp"
 
 namespace mbs {
 namespace {
@@ -62,10 +63,7 @@ RunSummary run_with_half_step(const Scene& scene, double step, double duration, 
   settings.step.step = step;
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.step.tolerance = tolerance;
-  settings.half_step = settings.step;
-  settings.half_step->step /= 2;
-  settings.half_step->penalty = automatic_penalty(scene.model, *settings.half_step);
-  return run(scene, test::reference(), settings);
+  return run(scene, test::reference(), test::with_half_step(scene, settings));
 }
 
 TEST(HalfStep, SeesBodiesWithoutFreePoints) {

@@ -15,4 +15,12 @@ inline RunSettings automatic_settings(const Scene& scene, double duration) {
   return settings;
 }
 
+/// The same with half the step beside.
+inline RunSettings with_half_step(const Scene& scene, RunSettings settings) {
+  settings.half_step = settings.step;
+  settings.half_step->step /= 2;
+  settings.half_step->penalty = automatic_penalty(scene.model, *settings.half_step);
+  return settings;
+}
+
 }  // namespace mbs::test
