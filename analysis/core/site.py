@@ -26,8 +26,7 @@ def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
     view = View(folder, part)
-    found = schema.records_of(folder, part, view.context)
-    tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
+    tables, found = write_tables(folder, part)
     drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
     about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {part}, profile {view.facts['profile']}"
     figures = {}  # {name: its file in base 64}
@@ -45,6 +44,13 @@ def write_part(folder, part):
         "disturbance": others})
     for name, known in (said.files(tables, view) if hasattr(said, "files") else {}).items():
         write_json(folder / part / name, known)
+
+
+def write_tables(folder, part):
+    """(tables of a part, the records that they are made from)"""
+    view = View(folder, part)
+    found = schema.records_of(folder, part, view.context)
+    return schema.write_tables(folder, part, _module(part, "tables").build(found, view), found), found
 
 
 @without_collection()

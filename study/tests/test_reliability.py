@@ -8,6 +8,7 @@ import random
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import uuid
 from pathlib import Path
@@ -16,13 +17,15 @@ import pytest
 
 from analysis.core import records, schema
 from analysis.core.files import digest
-from study.tests.conftest import PROGRAM, ROOT, environment, once
+from study.core import child
+from study.main import main
+from study.tests.conftest import PROGRAM, ROOT, environment, once, study
 
 pytestmark = pytest.mark.slow
 PART = "stability"  # whose tables have no times: two runs give the same
 COMMAND = [str(ROOT / "study" / "run"), "--profile", "smoke", "--part", PART, "--wait"]
 MARK = "MBS_BATTERY"  # in the environment of all that a run starts
-SEED, CHAINS, KILLS = 20080101, 4, 5  # of these on each of those results in turn
+SEED, CHAINS, KILLS = 20080101, 2, 5  # of these on each of those results in turn: every signal comes to the process and to its group
 SIGNALS = (signal.SIGKILL, signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
 
 
@@ -239,7 +242,6 @@ def rewrite(path, change):
 
 EVERY = ("run", "figures", "add")
 NAMED = {  # damage: (file that the line names, what is done to it, commands that must see it)
-    "truncated record": (record_in, cut, EVERY),
     "record of zeros": (record_in, lambda path: path.write_bytes(bytes(path.stat().st_size)), EVERY),
     "changed digit of a record": (record_in, lambda path: edit(path, '"kind":"', '"kind":"x'), EVERY),
     "record that is a list": (record_in, lambda path: path.write_text("[]"), EVERY),
@@ -280,36 +282,60 @@ NAMED = {  # damage: (file that the line names, what is done to it, commands tha
 }
 
 
+def words_of(command, folder):
+    return {"run": ["run", *COMMAND[1:], "--results", folder], "figures": ["figures", folder],
+            "add": ["add", "csc_klu", "--to", folder, "--wait"]}[command]
+
+
+def test_a_truncated_record_ends_each_command(whole, program, tmp_path):
+    for command in EVERY:
+        folder = Path(shutil.copytree(whole[0], tmp_path / command))
+        cut(record_in(folder))
+        done = study(*words_of(command, folder), program=program)
+        assert done.returncode == 2 and one_line(done.stderr) and record_in(folder).name in done.stderr, (command, done.stderr)
+
+
+@pytest.fixture
+def here(monkeypatch, program, capfd):
+    """Runs a command of the study in this process, which saves the time to load it; (exit status, standard error)."""
+    for key, value in environment(program).items():
+        monkeypatch.setenv(key, value)
+    monkeypatch.setattr(tempfile, "tempdir", None)  # is that of the environment
+    monkeypatch.setattr(child, "end_on_signals", lambda: None)
+
+    def run_here(*words):
+        capfd.readouterr()
+        return main([str(word) for word in words]), capfd.readouterr().err
+    return run_here
+
+
 @pytest.mark.parametrize("damage", NAMED)
-def test_what_is_damaged_is_named_in_one_line(whole, program, tmp_path, damage):
+def test_what_is_damaged_is_named_in_one_line(whole, here, tmp_path, damage):
     where, change, commands = NAMED[damage]
     for command in commands:
         folder = Path(shutil.copytree(whole[0], tmp_path / command))
         path = where(folder)
         change(path)
-        arguments = {"run": [*COMMAND, "--results", folder], "figures": [ROOT / "study" / "figures", folder],
-                     "add": [ROOT / "study" / "add", "csc_klu", "--to", folder, "--wait"]}
-        done = subprocess.run(arguments[command], capture_output=True, text=True, timeout=120, env=environment(program))
-        assert done.returncode == 2, (command, done.stdout, done.stderr)
-        assert one_line(done.stderr) and path.name in done.stderr, (command, done.stderr)
+        code, errors = here(*words_of(command, folder))
+        assert code == 2 and one_line(errors) and path.name in errors, (command, errors)
 
 
-def test_a_profile_of_bytes_is_no_profile_of_this_set(whole, program, tmp_path):
+def test_a_profile_of_bytes_is_no_profile_of_this_set(whole, here, tmp_path):
     folder = Path(shutil.copytree(whole[0], tmp_path / "set"))
     (folder / "profile.yaml").write_bytes(b"\xff\x00" * 99)
-    done = run(folder, program)
-    assert done.returncode == 2 and one_line(done.stderr) and "the profile's settings" in done.stderr
+    code, errors = here(*words_of("run", folder))
+    assert code == 2 and one_line(errors) and "the profile's settings" in errors
 
 
 @pytest.mark.parametrize("damage", [cut, lambda path: path.write_bytes(b"no archive"), lambda path: path.write_bytes(b"")])
-def test_a_damaged_archive_is_named(whole, tmp_path, damage):
+def test_a_damaged_archive_is_named(whole, here, tmp_path, damage):
     folder = Path(shutil.copytree(whole[0], tmp_path / "set"))
     records.pack(folder, PART, records.archive_of(folder, PART))
     shutil.rmtree(folder / "raw" / PART)
     shutil.rmtree(folder / ".done")
     damage(records.archive_of(folder, PART))
-    done = subprocess.run([ROOT / "study" / "figures", folder], capture_output=True, text=True, env=environment())
-    assert done.returncode == 2 and one_line(done.stderr) and f"{PART}.tar.xz" in done.stderr, done.stderr
+    code, errors = here(*words_of("figures", folder))
+    assert code == 2 and one_line(errors) and f"{PART}.tar.xz" in errors, errors
 
 
 def test_a_record_that_is_missing_is_measured_again_and_no_other(whole, program, tmp_path):
