@@ -118,12 +118,12 @@ def newest(base):
     return found[0].folder
 
 
-def need_own(folder, begun=BEGUN):
-    """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
+def need_own(folder, begun=BEGUN, marks=frozenset({".lock"})):
+    """StudyError if a folder holds anything but a set, or one that was just begun, which has one of `marks`: nothing of a user's is overwritten."""
     if not folder.is_dir() or (folder / "set.json").exists():
         return
     names = {path.name for path in folder.iterdir() if not path.name.startswith(".partial-")}
-    if names and (".lock" not in names or not names <= begun):
+    if names and not (marks & names and names <= begun):
         raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, or an empty one")
 
 

@@ -15,7 +15,7 @@ from analysis.core.files import StudyError, read_json
 from analysis.core.outcomes import FINISHED
 from study.core.cell import Contender
 from study.core.setting import Setting
-from study.tools.advise import answer, evidence, timing, validate
+from study.tools.advise import answer, evidence, main as advise_main, timing, validate
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import advise as command, duration
@@ -496,6 +496,21 @@ def test_what_is_wrong_is_said_in_a_line(tmp_path, monkeypatch, arguments, what)
     with pytest.raises(StudyError) as wrong:  # which the command prints
         command([*arguments, "--results", str(tmp_path / "results")])
     assert what in str(wrong.value) and "\n" not in str(wrong.value) and not (tmp_path / "results").exists()
+
+
+def test_a_stored_validation_goes_on_and_a_folder_of_a_user_is_left_alone(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(advise_main, "validate", lambda options, *_: ran.append(options.results))
+    for names in ([evidence.QUESTIONS, evidence.SEARCHED, evidence.PAGE], [".lock", "scenes"], []):  # of a clone; begun; new
+        folder = tmp_path / str(len(names))
+        folder.mkdir()
+        for name in names:
+            (folder / name).touch()
+        command(["--validate", "four-bar", "--results", str(folder)])
+        (folder / "mine.txt").touch()
+        with pytest.raises(StudyError, match="is not empty and holds no set"):
+            command(["--validate", "four-bar", "--results", str(folder)])
+    assert len(ran) == 3
 
 
 def test_what_is_wrong_is_all_that_the_command_prints(tmp_path):

@@ -14,7 +14,7 @@ from study.core.studyset import describe, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
-from study.tools.advise.evidence import BEGUN
+from study.tools.advise.evidence import BEGUN, QUESTIONS
 from study.tools.advise.probe import catalogue
 from study.tools.advise.runner import REPEATS, Runner, folder_of
 from study.tools.advise.validate import questions, validate
@@ -62,7 +62,7 @@ def _validate(options):
                          "--results do")
     questions(options.scene)  # before anything is written
     results = options.results or DEFAULT / "validation"
-    need_own(results, BEGUN)
+    need_own(results, BEGUN, {".lock", QUESTIONS})  # of a clone, it has no lock
     writable(results)
     return validate(options, ask, runner_of, results)
 
