@@ -43,7 +43,7 @@ def looked(cell):
     if cell["status"] != "ok":
         return cell
     cell = {key: cell[key] for key in ("implementation", "record", "verdict", "step_us", "passes", "pass_us")}
-    if cell["verdict"]:
+    if cell["verdict"] == "dropped":
         return cell | {"status": "dropped", "reason": "the budget was spent"}
     return cell | {"status": "slower", "reason": "in a first look far slower than the fastest library"}
 

@@ -36,7 +36,7 @@ EXAMPLES = {  # and families in small: the length of the shortest link, m
         ("examples/planar_joints", 0.5), ("examples/quarter_car", 0.8), ("examples/slider_crank", 0.1), ("examples/spatial_angles", 1.0),
         ("examples/spatial_joints", 0.07), ("examples/spatial_pendulum", 0.5), ("examples/spatial_slider_crank", 0.08))},
     "chain:3": 1.0, "loop:6": 1.0, "tree:3": 1.0, "ladder:3": 0.5, "grid:3x3": 0.5, "truss:2": 1.0, "scissors:3": 0.5, "bodies:3": 0.5,
-    "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57}
+    "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57, "cloth:3x3": 0.25}
 
 
 def four_bar(crank, coupler, rocker, ground, side=Side()):

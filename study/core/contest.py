@@ -1,4 +1,5 @@
-# A contest on one scene: a look at everyone, the gate for those who are near the fastest, and the times of those who agree.
+# A contest on one scene: a look at everyone, the gate, and the times of those who agree and are near the fastest.
+import math
 from collections import namedtuple
 from dataclasses import dataclass, replace
 
@@ -52,6 +53,7 @@ class Form:
     stretch: tuple = ()    # that is timed, else the scene's
     look: int = STEPS      # steps of the look
     patience: float = 1.0
+    gated: float = 0.0     # µs a step, up to which the gate is asked of those, too, who are too slow to be timed
 
 
 def contests(lab, scene, forms, *, own, always=False, control=False):
@@ -59,9 +61,11 @@ def contests(lab, scene, forms, *, own, always=False, control=False):
     `always`: they are gated and timed whatever they take; `control`: the fastest library is timed beside itself."""
     looks = [rows_of(measure(lab, scene, form.contenders, processes=1, repetitions=1, role=f"{form.role}-look",
                              settings=("--steps", form.look, "--patience", form.patience, *form.settings))) for form in forms]
-    asked = [Asked(scene, near(rows, form.contenders, own, always, form.wide), f"{form.role}-gate", form.settings)
-             for form, rows in zip(forms, looks)]
-    for form, rows, here in zip(forms, looks, agreeing(lab, asked, each=CHECK_S, drop=True)):
+    chosen = [near(rows, form.contenders, own, always, form.wide) for form, rows in zip(forms, looks)]
+    asked = [Asked(scene, [one for one in form.contenders if one in timed or times_of(rows).get(one.name, math.inf) <= form.gated],
+                   f"{form.role}-gate", form.settings) for form, rows, timed in zip(forms, looks, chosen)]
+    for form, rows, timed, agrees in zip(forms, looks, chosen, agreeing(lab, asked, each=CHECK_S, drop=True)):
+        here = [one for one in agrees if one in timed]
         if control:
             times = times_of(rows)
             here += [twin_of(one) for one in sorted((one for one in here if one.name not in own), key=lambda one: times[one.name])[:1]]

@@ -22,7 +22,7 @@ from study.tools.advise.main import advise as command, duration
 from study.tools.advise.probe import catalogue, find_speeds, fits, named, serving
 from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
-from study.tools.advise.truth import Truth
+from study.tools.advise.truth import Truth, spread
 from study.tools.advise.validate import _compare, _reference, fastest, search as exhaustive
 from study.tools.advise.verify import verify, what_helps
 from study.tests.conftest import ROOT, study
@@ -440,6 +440,14 @@ def test_runs_are_held_to_a_motion_between_its_instants():
     assert truth.error(series) == pytest.approx(1e-3, rel=1e-3)
 
 
+def test_points_of_every_kind_are_compared_whatever_their_order():
+    assert list(spread(3)) == [0, 1, 2]
+    for count in (100, 1000, 20000):  # of rods one after the other, whose ends are every second or third point
+        places = spread(count)
+        assert len(places) >= 35 and places[0] < 0.1 * count and places[-1] > 0.9 * count
+        assert all(sum(place % kinds == kind for place in places) >= 4 for kinds in (2, 3, 4) for kind in range(kinds))
+
+
 class Turning:
     """A lab of one point that turns at 40 rad/s, exactly."""
 
@@ -462,15 +470,17 @@ def test_the_reference_has_as_many_instants_as_a_fast_motion_needs():
 
 
 def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error_and_no_luck():
-    found = [{"setting": name, "status": status, "exact": exact, "us_per_second": time}
-             for name, status, exact, time in (
-                 ("a", "ok", 2e-2, 5.0), ("a", "degraded", 9e-3, 10.0), ("a", "ok", 1e-3, 20.0),
-                 ("b", "ok", 1e-3, 14.0), ("c", "ok", 1e-3, 21.0), ("d", "diverged", 1e-9, 1.0))]
+    found = [{"setting": name, "step": step, "status": status, "exact": exact, "us_per_second": time}
+             for name, step, status, exact, time in (
+                 ("a", 0.8, "ok", 2e-2, 5.0), ("a", 0.4, "degraded", 9e-3, 10.0), ("a", 0.2, "ok", 1e-3, 20.0),
+                 ("b", 0.4, "ok", 1e-3, 14.0), ("c", 0.4, "ok", 1e-3, 21.0), ("d", 0.8, "diverged", 1e-9, 1.0))]
     assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0, 14.0]
     assert fastest(found, 1e-4) == []
-    found = [{"setting": "a", "status": "ok", "exact": exact, "us_per_second": time}
-             for exact, time in ((9e-3, 4.0), (9e-3, 5.0), (2e-2, 7.0), (8e-3, 10.0), (1e-3, 20.0))]
+    found = [{"setting": "a", "step": step, "status": "ok", "exact": exact, "us_per_second": time}
+             for step, exact, time in ((0.8, 9e-3, 4.0), (0.57, 9e-3, 5.0), (0.4, 2e-2, 7.0), (0.28, 8e-3, 10.0), (0.2, 1e-3, 20.0))]
     assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0]  # half the step of the others fails
+    between = found + [{"setting": "a", "step": 0.26, "status": "ok", "exact": 3e-2, "us_per_second": None}]
+    assert [row["us_per_second"] for row in fastest(between, 1e-2)] == [20.0]
 
 
 @pytest.mark.parametrize("arguments, what", [

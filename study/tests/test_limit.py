@@ -84,6 +84,17 @@ def test_the_gates_of_all_forms_run_at_once_after_the_looks(measured):
     assert batches == [["penalty-gate", "saddle-point-gate"]]
 
 
+def test_the_gate_is_asked_of_the_slow_too_where_that_costs_little(measured):
+    times = {"one/a": 1.0, "one/b": 9.0, "own/x": 0.5, "own/y": 12.0}
+    measured.said = lambda scene, names: rows(**{name.replace("/", "_"): times[name] for name in names if name in times})
+    for gated, more in ((0.0, []), (10.0, ["one/b"])):
+        lab = Asked()
+        contest.contests(lab, "ladder:2", [contest.Form("penalty", lab.contenders, 2, 1, gated=gated)], own=REGISTRY.own)
+        [check] = [cell for cell in lab.cells if cell.kind == "check"]
+        assert sorted(one.name for one in check.contenders) == sorted(["one/a", "own/x", *more])
+        assert measured.asked[-1][2] == ["one/a", "own/x"]
+
+
 def test_families_have_controls_from_small_to_large(monkeypatch):
     asked = []
     monkeypatch.setattr(families, "about", lambda lab, scenes: [SimpleNamespace(done=False)] * len(scenes))

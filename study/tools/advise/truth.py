@@ -8,12 +8,18 @@ from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
 
 MOVING = ("free", "marker", "vector")  # of describe: what an error is of; markers are points of bodies, no coordinates
-POINTS = 20     # whose positions are compared, spread over the scene
+POINTS = 40     # whose positions are compared, spread over the scene
+GOLDEN = (5**0.5 - 1) / 2  # of the list, from one of them to the next: no kind of point that comes every so often is passed over
 DENSE = 400     # instants of the reference, at least; between them cubics through positions and velocities
 DENSER, DENSEST = 4, 25600  # times as many where cubics would be off; at most
 INSTANTS = 150  # at which a run is compared, at least
 FIRST_STEP, HALVINGS = 5e-4, 4  # s, of the reference at most; how often it is halved until the schemes agree
 SCHEMES = ("saddle-point", "penalty")
+
+
+def spread(count):
+    """Places of at most POINTS of so many points, in order."""
+    return range(count) if count <= POINTS else sorted({int(one * GOLDEN % 1 * count) for one in range(POINTS)})
 
 
 class Truth:
@@ -23,7 +29,7 @@ class Truth:
         self.duration, self.uncertainty = duration, math.inf
         axes = "xyz"[:described["dimension"]]
         points = [one["name"] for one in described["elements"]["points"] if one["kind"] in MOVING]
-        points = points[::max(1, len(points) // POINTS)]
+        points = [points[place] for place in spread(len(points))]
         self.columns, self.speeds = (tuple(f"{point}.{v}{axis}" for point in points for axis in axes) for v in ("", "v"))
         self.shape = (len(points), len(axes))
         dense, halving = DENSE, 0

@@ -18,8 +18,8 @@ from study.tools.advise.truth import FIRST_STEP, Truth
 PROBLEMS = "harness/scenes/problems"
 SCENES = {  # (kind, s): scenes
     ("four-bar", 5): ("four-bar:1", "four-bar:2", "four-bar:10", "four-bar:40"), ("ladder", 4): ("ladder:12", "ladder:40"),
-    ("grid", 3): ("grid:5x5", "grid:10x10"), ("truss", 3): ("truss:3", "truss:8"), ("vehicle", 4): ("vehicle:8", "vehicle:40"),
-    ("robot", 4): ("robot:8", "robot:30"), ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"),
+    ("grid", 3): ("grid:5x5", "grid:10x10"), ("cloth", 3): ("cloth:4x5", "cloth:10x10"), ("truss", 3): ("truss:3", "truss:8"),
+    ("vehicle", 4): ("vehicle:8", "vehicle:40"), ("robot", 4): ("robot:8", "robot:30"), ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"),
     ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"), ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"),
     ("star", 4): ("star:10", "star:100"), ("loop", 4): ("loop:20", "loop:60"), ("chain", 2): ("chain:20", "chain:60"),
     ("standard problems", 5): tuple(f"{PROBLEMS}/{name}.json" for name in (
@@ -32,6 +32,7 @@ SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): 
 CERTAIN = 0.1             # of an error: how well the motion must be known
 ROUNDS_AT_MOST = 600.0    # s of timing a question
 LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run; of a step to the next longer one
+BETWEEN = (0.96, 0.92, 0.85, 0.78, 0.6)  # of a step: what is run beside the ladder, to tell luck
 NEAR = 1.5        # times the fastest setting's time: others may be the fastest with another implementation
 TOO_LONG = 20.0   # s, of a run
 
@@ -124,7 +125,7 @@ def everything():
 
 def search(run, variants, described, duration, errors):
     """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}. A setting's steps end where two
-    in succession meet the smallest error or where they cost too much."""
+    in succession meet the smallest error or where they cost too much; beside the fastest there are more (`fastest`)."""
     longest = duration / LEAST_STEPS
     _, speeds = probe(variants, described, run, longest / 8, duration)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error
@@ -149,15 +150,31 @@ def search(run, variants, described, duration, errors):
                     "far slower than a setting that meets all errors" if least else f"they take more than {TOO_LONG:g} s")
                 break
             step *= RATIO
+    _between(run, rows, variants, speeds, duration, errors)
     return rows, speeds
 
 
+def _between(run, rows, variants, speeds, duration, errors):
+    """Runs each of the fastest rows at steps between its own and half of it, and so those that are the fastest then."""
+    settings = {setting.name: setting for setting in everything()}
+    tried = set()
+    while chosen := [row for error in errors for row in fastest(rows, error) if (row["setting"], row["step"]) not in tried]:
+        for row in chosen:
+            tried.add((row["setting"], row["step"]))
+            setting = settings[row["setting"]]
+            name = next(name for name in speeds if name in serving(setting, variants))
+            for at in (float(f"{part * row['step']:.3g}") for part in BETWEEN):
+                run.tell(f"search: {run.scene}, {setting.name}, step {at:g} s, between")
+                row = run("between", setting, name, at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
+                rows.append(row | {"us_per_second": None, "pruned": ""})
+
+
 def fastest(found, error):
-    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best. The two next shorter steps of
-    its setting, down to half of its own, must meet it too, or were left out: else it is luck, which half the step cannot show."""
+    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best. All shorter steps of its setting
+    that were run, down to half of its own, must meet it too: else it is luck, which half the step cannot show."""
     best = {}
-    rows = [row for at, row in enumerate(found) if row["us_per_second"] and all(
-        meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
+    rows = [row for row in found if row["us_per_second"] and all(
+        meets(other, error) for other in found if other["setting"] == row["setting"] and 0.49 * row["step"] < other["step"] <= row["step"])]
     for row in sorted(rows, key=lambda row: row["us_per_second"]):
         best.setdefault(row["setting"], row)
     return [row for row in best.values() if row["us_per_second"] <= NEAR * min(one["us_per_second"] for one in rows)]

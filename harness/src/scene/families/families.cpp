@@ -18,10 +18,10 @@ using FamilyDocument = nlohmann::json(const FamilyValues&);
 using FamilySize = SceneSize(const FamilyValues&);
 
 FamilyDocument chain_document, loop_document, tree_document, ladder_document, grid_document,
-    truss_document, scissors_document, bodies_document, vehicle_document, robot_document,
-    star_document, clusters_document, flexible_document;
-FamilySize chain_size, loop_size, tree_size, ladder_size, grid_size, truss_size, scissors_size,
-    bodies_size, vehicle_size, robot_size, star_size, clusters_size, flexible_size;
+    cloth_document, truss_document, scissors_document, bodies_document, vehicle_document,
+    robot_document, star_document, clusters_document, flexible_document;
+FamilySize chain_size, loop_size, tree_size, ladder_size, grid_size, cloth_size, truss_size,
+    scissors_size, bodies_size, vehicle_size, robot_size, star_size, clusters_size, flexible_size;
 
 std::span<const SceneFamily> scene_families() {
   static const FamilyParameter kDimension{"dimension", "D", 2, 3, 2};
@@ -47,6 +47,11 @@ std::span<const SceneFamily> scene_families() {
        {{"N", "N", 1, 5'000}, {"M", "M", 1, 5'000}},
        grid_size,
        grid_document},
+      {"cloth",
+       "stretch fabric: M threads of N rods, hung side by side, springs across them; spatial",
+       {{"N", "N", 1, 5'000}, {"M", "M", 2, 5'000}},
+       cloth_size,
+       cloth_document},
       {"truss",
        "folding crane boom: N hinged lattices of K bays, redundantly braced",
        {{"N", "N", 1, 6'666}, {"bays", "K", 1, 20, 8}},
