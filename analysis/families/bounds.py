@@ -49,7 +49,7 @@ def _agreement(scenes, mechanisms):
     found = (f"{asked.sum() - len(wrong)} of {asked.sum()} checks" + (f"; not: {where}" if where else "")
              + (f"; in {warned} of these `mbs describe` takes the other form" if warned else "")
              + (f"; {unasked} that have a time were not asked" if unasked else ""))
-    return [("who is timed agrees with the reference, in both forms", "always", found,
+    return [("who has a time agrees with the reference, in both forms", "always", found,
              False if len(wrong) else None if unasked or not asked.any() else True)]
 
 

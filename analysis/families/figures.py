@@ -11,7 +11,7 @@ from analysis.families.rule import WITHIN
 from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
-FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
+FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0), (3, 1, 0))  # of families
 FILLS = ("full", "none", "left")  # of marks of code of our own, who is the fastest most often first
 
 

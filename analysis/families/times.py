@@ -1,4 +1,4 @@
-# What a step takes, from numbers that need no factorization: passes times a sum of products of features, with coefficients that are not negative.
+# What a step takes, from numbers of a scene: passes times a sum of products of features, with coefficients that are not negative.
 #
 # Terms are what a pass does: something for each variable, constraint entry, non-zero of the matrix and of its factor, and the
 # operations of the factorization. Passes are the same for all: when times are compared only counts decide. Coefficients are those of

@@ -20,24 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-/// What `mbs describe --json` prints; with `scheme`, of this form whatever suits the scene.
-json description_of(const Scene& scene, const StepSettings& settings,
-                    const char* scheme = nullptr) {
-  require_step(settings.step);
-  json description = describe_json(scene, settings);
-  if (scheme != nullptr) {
-    description["scheme"]["take"] = scheme;
-    description["features"] = features_json(description);
-  }
-  description.update(recommendation_json(parse_rule(kRuleText), description,
-                                         [&](const std::string& variant, Scheme asked) {
-                                           StepSettings with = settings;
-                                           with.scheme = asked;
-                                           return why_not_offered(variant, scene.model, with);
-                                         }));
-  return description;
-}
-
 json scene_object(json document, const std::string& name) {
   if (document.is_object()) return document;
   throw UsageError(
@@ -53,9 +35,16 @@ Choice choose_by_rule(const Scene& scene, StepSettings settings) {
                                  name_of(settings.scheme)));
   }
   const bool is_saddle = settings.scheme == Scheme::saddle_point;
-  const bool may_choose = settings.penalty == 0.0 && settings.multipliers == MultiplierUpdate::every_pass;
+  const bool may_choose =
+      settings.penalty == 0.0 && settings.multipliers == MultiplierUpdate::every_pass;
   const char* asked = is_saddle ? "saddle-point" : may_choose ? nullptr : "penalty";
-  const json found = description_of(scene, settings, asked);
+  require_step(settings.step);
+  json described = describe_json(scene, settings);
+  if (asked != nullptr) {
+    described["scheme"]["take"] = asked;
+    described["features"] = features_json(described);
+  }
+  const json found = recommended(std::move(described), scene, settings, false);
   const json* fastest = nullptr;
   for (const json& one : found["recommendation"]) {
     if (fastest == nullptr || one["step_us"] < (*fastest)["step_us"]) fastest = &one;
@@ -134,10 +123,11 @@ double SceneDocument::number(const std::string& path) const {
   return refusing([&] {
     const nlohmann::json& value = content_->document[find_number(content_->document, path)];
     if (value.is_number()) return value.get<double>();
-    throw Refused(fmt::format(
-        "{}: found the expression {}, allowed is a number: ask for the parameters that it names, or "
-        "set one",
-        path, value.dump()));
+    throw Refused(
+        fmt::format("{}: found the expression {}, allowed is a number: ask for the parameters that "
+                    "it names, or "
+                    "set one",
+                    path, value.dump()));
   });
 }
 
@@ -156,7 +146,9 @@ std::string SceneDocument::describe(double step) const {
   return refusing([&] {
     StepSettings settings;
     settings.step = step;
-    return description_of(content_->scene(), settings).dump(2);
+    require_step(step);
+    const Scene scene = content_->scene();
+    return recommended(describe_json(scene, settings), scene, settings, true).dump(2);
   });
 }
 

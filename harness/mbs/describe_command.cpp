@@ -6,7 +6,6 @@
 #include "describe/describe.hpp"
 #include "describe/recommendation.hpp"
 #include "mbs/commands.hpp"
-#include "registry/registry.hpp"
 #include "registry/setting_names.hpp"
 #include "scene_file/load_scene.hpp"
 
@@ -31,13 +30,8 @@ void add_describe_command(CLI::App& app, int& status) {
   command->callback([options, &status] {
     require_step(options->settings.step);
     const Scene scene = load_scene(options->scene);
-    nlohmann::json description = describe_json(scene, options->settings);
-    const auto why_not = [&](const std::string& variant, Scheme scheme) {
-      StepSettings settings = options->settings;
-      settings.scheme = scheme;
-      return why_not_offered(variant, scene.model, settings);
-    };
-    description.update(recommendation_json(parse_rule(kRuleText), description, why_not));
+    const nlohmann::json description =
+        recommended(describe_json(scene, options->settings), scene, options->settings, true);
     if (options->json) {
       fmt::print("{}\n", description.dump(2));
     } else {

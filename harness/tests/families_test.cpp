@@ -214,10 +214,10 @@ TEST(Families, GridMovesAsOneColumn) {
   many.expect("P3_2", many.acceleration("P3_4"));
 }
 
-/// Three rods on fixed hinges P0_j. At rest, what is along a rod is carried by it, and the rest
-/// moves a third of its mass, as half of its weight and all of the springs' forces are at P1_j.
+/// Rods on fixed hinges P0_j: of a rod, a third of its mass and half of its weight are at P1_j. At
+/// rest it takes what is along it.
 TEST(Families, ClothOfOneRowIsPendulumsWithSpringsBetween) {
-  const Start cloth("cloth:1x3");
+  const Start cloth("cloth:1x4");
   const auto at = [&](const std::string& name) { return place(cloth.scene, name); };
   const auto pull = [&](const std::string& here, const std::string& there, double stiffness,
                         double length) {
@@ -225,15 +225,16 @@ TEST(Families, ClothOfOneRowIsPendulumsWithSpringsBetween) {
     return stiffness * (1.0 - length / norm(r)) * r;
   };
   const double cell = 0.25, diagonal = std::sqrt(2.0) * cell;
-  const Vector3 weight{0.0, -0.05 * kG, 0.0};
   const auto expect = [&](const std::string& column, const Vector3& springs) {
-    const Vector3 rod = at("P1_" + column) - at("P0_" + column), force = weight + springs;
+    const Vector3 rod = at("P1_" + column) - at("P0_" + column);
+    const Vector3 force = Vector3{0.0, -0.05 * kG, 0.0} + springs;
     cloth.expect("P1_" + column, (3.0 / 0.1) * (force - (dot(force, rod) / dot(rod, rod)) * rod));
   };
-  expect("1", pull("P1_1", "P1_0", 10.0, cell) + pull("P1_1", "P1_2", 10.0, cell) +
-                  pull("P1_1", "P0_0", 5.0, diagonal) + pull("P1_1", "P0_2", 5.0, diagonal));
   expect("0", pull("P1_0", "P1_1", 10.0, cell) + pull("P1_0", "P0_1", 5.0, diagonal) +
                   pull("P1_0", "P1_2", 2.0, 2.0 * cell));
+  expect("1", pull("P1_1", "P1_0", 10.0, cell) + pull("P1_1", "P1_2", 10.0, cell) +
+                  pull("P1_1", "P0_0", 5.0, diagonal) + pull("P1_1", "P0_2", 5.0, diagonal) +
+                  pull("P1_1", "P1_3", 2.0, 2.0 * cell));
 }
 
 TEST(Families, ClothHangsAtRestAndMovesAlikeOnBothSides) {

@@ -1,5 +1,4 @@
 # A contest on one scene: a look at everyone, the gate, and the times of those who agree and are near the fastest.
-import math
 from collections import namedtuple
 from dataclasses import dataclass, replace
 
@@ -62,8 +61,8 @@ def contests(lab, scene, forms, *, own, always=False, control=False):
     looks = [rows_of(measure(lab, scene, form.contenders, processes=1, repetitions=1, role=f"{form.role}-look",
                              settings=("--steps", form.look, "--patience", form.patience, *form.settings))) for form in forms]
     chosen = [near(rows, form.contenders, own, always, form.wide) for form, rows in zip(forms, looks)]
-    asked = [Asked(scene, [one for one in form.contenders if one in timed or times_of(rows).get(one.name, math.inf) <= form.gated],
-                   f"{form.role}-gate", form.settings) for form, rows, timed in zip(forms, looks, chosen)]
+    asked = [Asked(scene, [one for one in form.contenders if one in timed or one.name in known and known[one.name] <= form.gated],
+                   f"{form.role}-gate", form.settings) for form, known, timed in zip(forms, map(times_of, looks), chosen)]
     for form, rows, timed, agrees in zip(forms, looks, chosen, agreeing(lab, asked, each=CHECK_S, drop=True)):
         here = [one for one in agrees if one in timed]
         if control:

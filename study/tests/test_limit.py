@@ -96,11 +96,18 @@ def test_the_gate_is_asked_of_the_slow_too_where_that_costs_little(measured):
 
 
 def test_families_have_controls_from_small_to_large(monkeypatch):
-    asked = []
+    asked, gated = [], set()
     monkeypatch.setattr(families, "about", lambda lab, scenes: [SimpleNamespace(done=False)] * len(scenes))
-    monkeypatch.setattr(families, "contests", lambda lab, scene, forms, *, control, **_: asked.append((scene, control)) or [rows() for _ in forms])
-    families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}), "mechanisms")
+    monkeypatch.setattr(families, "contests", lambda lab, scene, forms, *, control, **_: asked.append((scene, control)) or [
+        gated.add(form.gated) or rows() for form in forms])
+    families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}, seconds=7000), "mechanisms")
     assert {scene for scene, control in asked if control} == {"chain:0", "chain:2", "chain:4"} and len(asked) == 6
+    assert gated == {1250.0}  # of 800 steps, the most that a check has, within a second
+
+
+def test_a_check_has_fewer_steps_on_large_scenes():
+    steps = [families._checked(SimpleNamespace(done=True, output={"variables": n})) for n in (100, 500, 2000, 20000, 40000)]
+    assert steps == [800, 800, 200, 20, 16]
 
 
 def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):

@@ -9,7 +9,7 @@
 
 namespace mbs {
 
-/// The description for programs, but for what recommendation_json() adds. Step and precision of
+/// The description for programs, but for what recommended() adds. Step and precision of
 /// `settings` are what the penalty window and the warnings are for. Keys:
 ///
 /// - scene, dimension, variables, constraints; free_points, free_vectors: those that own the
@@ -21,7 +21,7 @@ namespace mbs {
 /// - assembly {position_correction, velocity_correction, point};
 /// - terms {name: count or true/false};
 /// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
-/// - passes {"penalty", "saddle-point"}: of a step, estimated, a mean of the first hundred;
+/// - passes {"penalty", "saddle-point"}: of a step, kUnknownPasses until recommended() counts them;
 /// - elimination, see elimination_json(); features {name: number or null}, README.md;
 /// - judged_length (m), what `mbs simulate` judges estimated and local errors by;
 /// - drivers_end (s; null if drivers are known for ever or there are none);

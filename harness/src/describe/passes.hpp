@@ -1,21 +1,19 @@
-// How many passes a step takes, from how accelerations change at the start.
+// How many passes a step takes.
 #pragma once
 
-#include "mbs/simulation.hpp"
+#include "mbs/implementation.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
 
-/// Passes a step, a mean of the first kPassSteps.
-struct Passes {
-  double penalty = 2.0, saddle_point = 2.0;  ///< of the forms; 2 where nothing is known
-};
+inline constexpr double kUnknownPasses = 2.0;  ///< where nobody can count them
 
-inline constexpr int kPassSteps = 100;
-
-/// With the step of `settings`, and penalty factor and tolerance as they are chosen without being
-/// asked for; `smallest`: smallest_constraint_eigenvalue() at the start. README.md here says how.
-/// Takes three factorizations of the saddle-point matrix.
-Passes expected_passes(const Scene& scene, double smallest, const StepSettings& settings);
+/// Passes a step over the stretch that `mbs bench` times (run/stretch.hpp), or its beginning where
+/// that is much work: of a factorization, as elimination.hpp counts them, there are `flops`.
+/// Scheme, step and precision are those of `settings`, penalty factor and tolerance automatic.
+/// kUnknownPasses if that is too much work, or if `variant`, which serves the scene and the
+/// settings, does not make a step.
+double count_passes(const Scene& scene, StepSettings settings, const Variant& variant,
+                    double flops);
 
 }  // namespace mbs

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "describe/features.hpp"
+#include "describe/passes.hpp"
+#include "registry/registry.hpp"
 #include "registry/setting_names.hpp"
 
 namespace mbs {
@@ -171,6 +173,34 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
     result["no_recommendation"] = "nothing that was measured can run this";
   }
   return result;
+}
+
+json recommended(json description, const Scene& scene, StepSettings settings, bool counts) {
+  const std::optional<Rule> rule = parse_rule(kRuleText);
+  const auto why_not = [&](const std::string& variant, Scheme scheme) {
+    settings.scheme = scheme;
+    return why_not_offered(variant, scene.model, settings);
+  };
+  json found = recommendation_json(rule, description, why_not);
+  if (counts && !found["recommendation"].empty()) {
+    const json& list = found["recommendation"];
+    const std::string fastest = std::ranges::min_element(list, [](const json& a, const json& b) {
+                                  return a["step_us"] < b["step_us"];
+                                })->at("implementation");
+    const NamedVariant by = select_variants({fastest}).front();
+    for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+      if (!why_not(fastest, scheme).empty()) continue;
+      const json& order = description["elimination"]["orderings"]
+                                     [scheme == Scheme::penalty ? "AMD" : "saddle-point"];
+      if (order.is_null()) continue;
+      description["passes"][name_of(scheme)] =
+          count_passes(scene, settings, *by.variant, order["flops"]);
+    }
+    description["features"] = features_json(description);
+    found = recommendation_json(rule, description, why_not);
+  }
+  description.update(found);
+  return description;
 }
 
 }  // namespace mbs

@@ -8,6 +8,7 @@
 
 #include "describe/rule.hpp"
 #include "mbs/simulation.hpp"
+#include "scene/scene.hpp"
 
 namespace mbs {
 
@@ -27,6 +28,11 @@ using WhyNot = std::function<std::string(const std::string& variant, Scheme sche
 ///   measured scenes]}, or null.
 nlohmann::json recommendation_json(const std::optional<Rule>& rule,
                                    const nlohmann::json& description, const WhyNot& why_not);
+
+/// A describe_json() of `scene` with recommendation_json() by the rule of this build. With `counts`
+/// its passes are counted first, by the fastest of those that are recommended (count_passes()).
+nlohmann::json recommended(nlohmann::json description, const Scene& scene, StepSettings settings,
+                           bool counts);
 
 /// The same for people, from the JSON of both: at most five lines.
 std::string recommendation_text(const nlohmann::json& description);

@@ -19,7 +19,7 @@ SCHEMES = ("saddle-point", "penalty")
 
 def spread(count):
     """Places of at most POINTS of so many points, in order."""
-    return range(count) if count <= POINTS else sorted({int(one * GOLDEN % 1 * count) for one in range(POINTS)})
+    return range(count) if count <= POINTS else sorted({count - 1, *(int(one * GOLDEN % 1 * count) for one in range(POINTS - 1))})
 
 
 class Truth:

@@ -33,6 +33,7 @@ CERTAIN = 0.1             # of an error: how well the motion must be known
 ROUNDS_AT_MOST = 600.0    # s of timing a question
 LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run; of a step to the next longer one
 BETWEEN = (0.96, 0.92, 0.85, 0.78, 0.6)  # of a step: what is run beside the ladder, to tell luck
+UNKNOWN = ("unsupported", "timeout", "crashed", "out-of-memory")  # nothing of the motion
 NEAR = 1.5        # times the fastest setting's time: others may be the fastest with another implementation
 TOO_LONG = 20.0   # s, of a run
 
@@ -125,7 +126,7 @@ def everything():
 
 def search(run, variants, described, duration, errors):
     """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}. A setting's steps end where two
-    in succession meet the smallest error or where they cost too much; beside the fastest there are more (`fastest`)."""
+    in succession meet the smallest error or where they cost too much; beside the fastest there are more (`_between`)."""
     longest = duration / LEAST_STEPS
     _, speeds = probe(variants, described, run, longest / 8, duration)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error
@@ -136,7 +137,7 @@ def search(run, variants, described, duration, errors):
             at = float(f"{step:.3g}")
             run.tell(f"search: {run.scene}, {setting.name}, step {at:g} s")
             row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
-            if row["status"] in ("unsupported", "timeout", "crashed", "out-of-memory"):
+            if row["status"] in UNKNOWN:
                 break
             timed = meets(row, max(errors)) and run("speed", setting, served[0], at, duration, 8 * TOO_LONG)
             row |= {"us_per_second": timed["step_us"] / at if timed and timed["step_us"] else None, "pruned": ""}
@@ -158,15 +159,16 @@ def _between(run, rows, variants, speeds, duration, errors):
     """Runs each of the fastest rows at steps between its own and half of it, and so those that are the fastest then."""
     settings = {setting.name: setting for setting in everything()}
     tried = set()
-    while chosen := [row for error in errors for row in fastest(rows, error) if (row["setting"], row["step"]) not in tried]:
-        for row in chosen:
-            tried.add((row["setting"], row["step"]))
+    while chosen := {at: row for error in errors for row in fastest(rows, error) if (at := (row["setting"], row["step"])) not in tried}:
+        tried |= chosen.keys()
+        for row in chosen.values():
             setting = settings[row["setting"]]
             name = next(name for name in speeds if name in serving(setting, variants))
             for at in (float(f"{part * row['step']:.3g}") for part in BETWEEN):
                 run.tell(f"search: {run.scene}, {setting.name}, step {at:g} s, between")
-                row = run("between", setting, name, at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
-                rows.append(row | {"us_per_second": None, "pruned": ""})
+                found = run("between", setting, name, at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
+                if found["status"] not in UNKNOWN:
+                    rows.append(found | {"us_per_second": None, "pruned": ""})
 
 
 def fastest(found, error):

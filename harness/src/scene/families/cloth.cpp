@@ -1,4 +1,5 @@
 // Stretch fabric: threads that keep their length one way, elastic ones across.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,11 +22,12 @@ nlohmann::json cloth_document(const FamilyValues& values) {
   constexpr double kLean = 0.6;                              // rad
   constexpr double kWeft = 10.0, kShear = 5.0, kBend = 2.0;  // N/m
   const int rows = values[0], columns = values[1];
+  const double most = kLean * std::min(1.0, double(columns) / rows);  // or a long one is torn
   SceneWriter scene(3);
   const auto name = [](int row, int column) { return fmt::format("P{}_{}", row, column); };
   for (int i = 0; i <= rows; ++i) {
     for (int j = 0; j < columns; ++j) {
-      const double lean = kLean * std::sin(std::numbers::pi * (j + 1) / (columns + 1));
+      const double lean = most * std::sin(std::numbers::pi * (j + 1) / (columns + 1));
       const Vector3 down{0.0, -std::cos(lean), std::sin(lean)};
       const Vector3 r = kCell * (Vector3{double(j), 0.0, 0.0} + double(i) * down);
       if (i == 0) {

@@ -49,7 +49,7 @@ std::span<const SceneFamily> scene_families() {
        grid_document},
       {"cloth",
        "stretch fabric: M threads of N rods, hung side by side, springs across them; spatial",
-       {{"N", "N", 1, 5'000}, {"M", "M", 2, 5'000}},
+       {{"N", "N", 1, 4'000}, {"M", "M", 3, 5'000}},
        cloth_size,
        cloth_document},
       {"truss",
