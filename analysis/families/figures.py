@@ -4,6 +4,7 @@ from itertools import cycle
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.path import Path
 
 from analysis.core.style import GREY, MARKERS, Look, missing, number_axis
 from analysis.core.text import number
@@ -11,7 +12,7 @@ from analysis.families.rule import WITHIN
 from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
-FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0), (3, 1, 0))  # of families
+FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0), Path.unit_circle_righthalf())  # of families
 FILLS = ("full", "none", "left")  # of marks of code of our own, who is the fastest most often first
 
 

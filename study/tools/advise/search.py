@@ -51,7 +51,7 @@ class Search:
     def search(self):
         """Pilots until every setting has a step, or a reason why it has none."""
         while ready := [one for one in self.found.values() if one.open and self._ready(one)]:
-            self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._tells(one.parent) else DOUBT)))
+            self._advance(min(ready, key=lambda one: self.promise(one) * (1 if self._tells(one) or self._leads(one) else DOUBT)))
         for one in self.found.values():
             if one.open and one.quick_us == math.inf:
                 one.reason = "its steps take far longer than those of other settings"
@@ -69,7 +69,7 @@ class Search:
         parent = one.parent
         if one.pilots:
             return one.step_us() / self._needed(one)
-        if self._tells(parent):
+        if self._leads(one):
             at = where = parent.chosen or self._needed(parent)
         elif self.step:
             at = where = self.step
@@ -78,14 +78,18 @@ class Search:
             at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.asked.first_step), self.asked.first_step
         if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
             one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
-                            or (parent.step_us() if self._tells(parent) else 0.0))
+                            or (parent.step_us() if parent and parent.pilots else 0.0))
         return one.quick_us / at
 
     def _tells(self, one):
-        """Whether a setting's pilots tell which step it needs. Where one was lost, estimates must count: a scheme that is lost at a singular
-        position may lose it again at the next step, where a change of it passes."""
+        """Whether a setting's pilots tell which step it needs. Where one was lost, estimates must count: what is lost at a singular position may
+        be lost there again at the next step."""
         valid = [pilot for pilot in one.pilots if pilot.valid] if one else []
         return bool(valid) and (len(valid) == len(one.pilots) or any(counts(pilot.step, valid, self.error) for pilot in valid))
+
+    def _leads(self, one):
+        """Whether the pilots of its scheme tell which step a change needs: none of them was lost, as the change may pass where it was."""
+        return bool(one.parent and one.parent.pilots) and all(pilot.valid for pilot in one.parent.pilots)
 
     def _needed(self, one):
         """The step that a setting's estimates ask for."""
@@ -101,11 +105,11 @@ class Search:
     def _ready(self, one):
         if one.parent and one.parent.open and self._ready(one.parent):
             return False  # the scheme itself first
-        return not self.promise(one) > (NEAR if self._tells(one.parent) else SCHEME) * self.best()
+        return not self.promise(one) > (NEAR if self._leads(one) else SCHEME) * self.best()
 
     def _advance(self, one):
         parent, order = one.parent, one.setting.order
-        start = parent.rung() if self._tells(parent) else self.asked.first_step
+        start = parent.rung() if self._leads(one) else self.asked.first_step
         after = (next_at(self.step, one.pilots, self.error, order, self.duration) if self.step else
                  next_step(one.pilots, self.error, order, start, self.duration))
         if after.step is None:
