@@ -1,4 +1,5 @@
 # Rows, times at equal error, figures and page of the engines on synthetic records.
+from functools import partial
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
@@ -7,10 +8,10 @@ import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
 from analysis.engines import andrews, equal_error, figures, page, sentences, tables
 from analysis.engines.runs import row
 from analysis.engines.subjects import FLOOR, PENDULUM_S, positions, subject_of
+from analysis.tests.tables_of import tables_of
 
 LONG, SHORT = "four-bar-2", "four-bar-2-regular"
 VIEW = SimpleNamespace(registry=Registry({"implementations": [
@@ -54,11 +55,7 @@ ABSENT = Record(f"{LONG}/engine/x", {"program": "study/engines/engine_simbody", 
                 "unavailable", "libsimbody-dev is not installed (study/setup --engines)", 0.0, [], {})
 
 
-def made(*records):
-    """Tables as the schema has them."""
-    found, schema = tables.build(list(records), VIEW), of_part("engines")
-    assert set(found) == set(schema)
-    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+made = partial(tables_of, "engines", tables.build, VIEW)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,5 @@
 # Extremes: judging, tables, figures, page and answers on synthetic records and small tables of every outcome.
+from functools import partial
 from types import SimpleNamespace
 
 import numpy
@@ -9,9 +10,9 @@ from analysis.core import site
 from analysis.core.files import ROOT, StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
 from analysis.extremes import battery, cells, judge, page, sentences, tables, trials, verdicts
 from analysis.extremes.motions import Chain, Flat
+from analysis.tests.tables_of import tables_of
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
 NAMES = ("a/v", "b/v", "csc_klu/v")
@@ -39,15 +40,7 @@ def run(status="ok", error=0.0, who="a/v", role="penalty", of=CELL, **more):
                   {"status": status} | more, {"t": list(TIMES)} | series)
 
 
-def conformed(found):
-    schema = of_part("extremes")
-    assert set(found) == set(schema)
-    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
-            for name, frame in found.items()}
-
-
-def made(*records):
-    return conformed(tables.build(list(records), VIEW))
+made = partial(tables_of, "extremes", tables.build, VIEW)
 
 
 def test_what_is_ok_beyond_its_class_is_silently_wrong():

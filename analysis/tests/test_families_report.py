@@ -1,5 +1,6 @@
 # Who is fastest on real mechanisms: tables, figure, page and sentences on synthetic records.
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
@@ -10,9 +11,9 @@ import yaml
 
 from analysis.core import site
 from analysis.core.files import ROOT
-from analysis.core.schema import conform, of_part
 from analysis.families import bounds, by_hand, defaults, figures, page, rule, sentences, tables, times
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
+from analysis.tests.tables_of import tables_of
 
 SCENES = ["ladder:2", "grid:3x3"]
 VIEW = SimpleNamespace(registry=REGISTRY, settings={"processes": {"penalty": 3, "saddle-point": 2}, "scenes": SCENES}, context={"cpu_model": "P"})
@@ -28,11 +29,7 @@ def asked(scene, **verdicts):
     return [replace(one, cell=one.cell | {"role": "penalty-gate"}) for one in gate("any", scene, **verdicts)]
 
 
-def made(*records):
-    found, schema = tables.build([one for group in records for one in (group if isinstance(group, list) else [group])], VIEW), of_part("families")
-    assert set(found) == set(schema)
-    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
-            for name, frame in found.items()}
+made = partial(tables_of, "families", tables.build, VIEW)
 
 
 def measured(scene, number, **times):

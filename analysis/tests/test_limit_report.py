@@ -1,17 +1,17 @@
 # Tables, what must hold, figures and sentences of the limit on synthetic records.
+from functools import partial
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy
-import pandas
 import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
 from analysis.limit import figures, held, page, sentences, tables
 from analysis.core.timing import PHASES
 from analysis.limit.tables import LIMIT
+from analysis.tests.tables_of import tables_of
 
 REGISTRY = Registry({"implementations": [
     {"folder": "one", "available": True, "library": "L", "variants": [{"name": "one/a"}, {"name": "one/b"}]},
@@ -53,13 +53,7 @@ def batch(scene, sets, number=1, **gains):
     return Record(f"batch/{scene}-{sets}-{number}.json", cell, "done", "", 1.0, [], {}, {"rows": found})
 
 
-def made(*records):
-    """Tables as the schema has them."""
-    found, schema = tables.build([one for group in records for one in (group if isinstance(group, list) else [group])],
-                                 VIEW), of_part("limit")
-    assert set(found) == set(schema)
-    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
-            for name, frame in found.items()}
+made = partial(tables_of, "limit", tables.build, VIEW)
 
 
 def look(scene, kind="problem", **times):

@@ -1,4 +1,5 @@
 # Verdicts, tables, figures and sentences of real time on synthetic records.
+from functools import partial
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
@@ -6,9 +7,9 @@ import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
 from analysis.realtime import figures, page, sentences, tables
 from analysis.realtime.tables import judge, needs_null
+from analysis.tests.tables_of import tables_of
 
 REGISTRY = Registry({"implementations": [
     {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
@@ -32,11 +33,7 @@ def null(after, lost, status="done"):
     return Record(f"largest/null/{after}", cell, status, "", 1.3, [], {}, output)
 
 
-def made(*records):
-    """Tables as the schema has them."""
-    found, schema = tables.build(list(records), VIEW), of_part("realtime")
-    assert set(found) == set(schema)
-    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+made = partial(tables_of, "realtime", tables.build, VIEW)
 
 
 @pytest.mark.parametrize("missed, lost, kept, hopeless", [

@@ -1,4 +1,5 @@
 # Tables and sentences of the standard problems and of modelling on synthetic records.
+from functools import partial
 from types import SimpleNamespace
 
 import numpy
@@ -7,8 +8,8 @@ import pytest
 from analysis.core.files import StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
 from analysis.scenes import page, sentences, tables
+from analysis.tests.tables_of import tables_of
 from study.scenes import problems, references
 
 NAMES = ("one/a", "two/b", "three/c")
@@ -55,11 +56,7 @@ def modelled(case, number, *times, motion="plausible", off=1e-3):
                                                     {"rows": rows})]
 
 
-def made(*records):
-    """Tables as the schema has them."""
-    found, schema = tables.build(list(records), VIEW), of_part("scenes")
-    assert set(found) == set(schema)
-    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+made = partial(tables_of, "scenes", tables.build, VIEW)
 
 
 def test_a_run_is_judged_by_the_closed_form_and_a_failed_one_keeps_its_reason():

@@ -3,12 +3,7 @@ from analysis.accuracy.subjects import columns as listed
 from analysis.core.files import StudyError
 from study.accuracy import pairs, work
 
-SETTINGS = {"duration": float,  # s simulated of the N-four-bar
-            "longest": float,   # s of a run: one that is predicted to take longer is not made
-            "processes": list,  # of a point that may be fastest: at least, and at most where that leaves it open
-            "settings": list,   # names in study/settings.yaml; none: all
-            "errors": list,     # required, m: the most telling first
-            "columns": list}
+SETTINGS = {"duration": float, "longest": float, "processes": list, "settings": list, "errors": list, "columns": list}
 
 
 def columns(settings):

@@ -15,12 +15,7 @@ from study.core.cell import Cell
 from study.core.curves import Curve, follow
 from study.core.setting import read_settings
 
-SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
-            "engine_settings": int,  # of each engine, the first of settings.yaml
-            "implementations": list,  # ours
-            "settings": list,      # ours: names of study/settings.yaml
-            "time_limit": float,   # s: a run that is predicted to take longer is not made
-            "rounds": int}
+SETTINGS = {"subjects": list, "engine_settings": int, "implementations": list, "settings": list, "time_limit": float, "rounds": int}
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
 REPEATS = 5          # of such a run in one process, theirs as ours; the least time of each of its pieces counts

@@ -5,12 +5,7 @@ from analysis.extremes import battery as table, cells, judge, trials
 from study.core.cell import REFERENCE, Cell
 from study.core.profile import by_share
 
-SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, for other settings, for trials ...
-            "everyone": bool,         # ... and whether all others come after them
-            "trials": dict,           # runs of standard problems and of others; 0: all
-            "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
-            "processes": int,         # of the pivots
-            "limit": float}           # s a run
+SETTINGS = {"implementations": dict, "everyone": bool, "trials": dict, "cells": int, "processes": int, "limit": float}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 
 

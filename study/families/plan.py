@@ -7,9 +7,7 @@ from study.core.cell import Cell
 from study.core.contest import Form, about, contests, elsewhere, times_of, usual
 from study.core.setting import Setting
 
-SETTINGS = {"scenes": list,     # families with their sizes, as the program takes them, the most telling first
-            "processes": dict,  # of a scene, by scheme
-            "samples": int}     # of a process and contender
+SETTINGS = {"scenes": list, "processes": dict, "samples": int}
 CONTROLS = 3  # scenes on which the fastest library is timed beside itself
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along

@@ -11,17 +11,8 @@ from study.core.setting import Setting
 from study.core.timing import measure
 from study.scenes.problems import read_list
 
-SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
-            "large": list,     # sizes for the limit code and code of our own alone, in both forms
-            "problems": list,  # standard problems, by name ...
-            "examples": list,  # ... examples, by file ...
-            "fills": list,     # ... and fills of the four-bar of 100 variables, on which own code meets libraries
-            "batches": list,   # sizes of the N-four-bar for batches
-            "sets": list,      # of parameters in a batch
-            "swept": int,      # lanes of a sweep
-            "patience": float, # s of the first stretch of a size: whoever is slower is not timed
-            "processes": int,  # of a scene
-            "samples": int}    # of a process and contender
+SETTINGS = {"loops": list, "large": list, "problems": list, "examples": list, "fills": list, "batches": list, "sets": list, "swept": int,
+            "patience": float, "processes": int, "samples": int}
 FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes
 BATCH_S = 0.02  # a process of batches lasts about ten times that
 SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of a tenth of a second

@@ -7,16 +7,8 @@ from study.core.profile import need_keys
 from study.core.timing import measure
 from study.map.timed import NATURAL, Scene, TimedScene, alternatives, fit
 
-SETTINGS = {"processes": int,      # of a timed scene
-            "process": float,      # s of samples in each, about
-            "again": int,          # further processes of those who lead
-            "slower": dict,        # natural, filled: whoever is so many times slower than the fastest library is not timed
-            "limits": dict,        # s: pilot, check, time
-            "alternatives": list,  # the same on other BLAS pairs, at natural fill; never ranked
-            "phases": dict,        # columns, processes: shares of a step by phase
-            "operations": dict,    # columns, processes: Table 2's operations one by one
-            "seeds": dict,         # columns, seeds, processes: the leaders of a filled scene with other artificial positions
-            "columns": list}       # variables, seconds, fills (natural, then shares of n^2), perhaps its own slower
+SETTINGS = {"processes": int, "process": float, "again": int, "slower": dict, "limits": dict, "alternatives": list, "phases": dict,
+            "operations": dict, "seeds": dict, "columns": list}
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 

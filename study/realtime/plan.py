@@ -8,14 +8,8 @@ from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
 
-SETTINGS = {"implementations": list,  # names, what is worth most first
-            "others": bool,           # whether all others follow
-            "schemes": list,
-            "steps": list,            # s, the deadlines too
-            "loops": list,            # sizes whose distributions are shown
-            "duration": float,        # s simulated, of a distribution ...
-            "pilot": float,           # ... and of a run of the search: past the first singular position of every size
-            "most": int}              # loops of the largest size that is tried
+SETTINGS = {"implementations": list, "others": bool, "schemes": list, "steps": list, "loops": list, "duration": float, "pilot": float,
+            "most": int}
 GRID = sorted({round(2 ** (power / 4)) for power in range(60)})  # the sizes of the search
 JUMP = 8             # places on the grid, of the search's first steps: a factor of four
 PATIENCE = 2.0       # times real time that a run may take, besides its set-up

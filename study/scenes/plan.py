@@ -4,10 +4,7 @@ from study.core.profile import by_share
 from study.scenes import metric, modelling
 from study.scenes.problems import compared_of, read_list
 
-SETTINGS = {"problems": list,  # names in problems.yaml
-            "loops": list,     # sizes of the N-four-bar on which modelling is measured
-            "rounds": int,     # processes of each of its cases, in turn
-            "samples": int}    # of a process and contender
+SETTINGS = {"problems": list, "loops": list, "rounds": int, "samples": int}
 CHECK_S, RUN_S = 120, 600  # limits of a process
 
 

@@ -3,11 +3,7 @@ from study.core.cell import Cell
 from study.core.profile import by_share
 from study.core.setting import Setting
 
-SETTINGS = {"loops": list,      # sizes of the maps
-            "powers": list,     # of two: the steps are 1.25e-3 s times these
-            "decades": list,    # of alpha step^2 / 4, in kg/m^2
-            "duration": float,  # s, of a run of the maps
-            "whole": dict}      # {scheme: sizes} of the runs of 20 s
+SETTINGS = {"loops": list, "powers": list, "decades": list, "duration": float, "whole": dict}
 IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "compiled_ldl/fronts"}
 FORMS = ("penalty", "saddle-point")
 STEP, WHOLE = 1.25e-3, 20.0

@@ -1,12 +1,12 @@
 # Tuning: who is asked, of whom only those that the gate agrees with are timed, and what the table says of each.
+from functools import partial
 from types import SimpleNamespace
 
-import pandas
 import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.core.schema import conform, of_part
+from analysis.tests.tables_of import tables_of
 from analysis.tuning import page, sentences, tables
 from study.core.cell import Contender
 from study.tuning import plan
@@ -33,10 +33,7 @@ def bench(number, **times):
     return Record(f"time/{number}", cell, "done", "", 1.0, [], {}, {"rows": found})
 
 
-def made(*records):
-    schema = of_part("tuning")["alternatives"]
-    frame = tables.build(list(records), VIEW)["alternatives"]
-    return {"alternatives": conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema)), schema, "alternatives")}
+made = partial(tables_of, "tuning", tables.build, VIEW)
 
 
 def test_what_was_tried_stands_apart_from_what_takes_part():

@@ -5,10 +5,7 @@ from study.core.contest import CHECK_S, Asked, agreeing, usual
 from study.core.profile import by_share
 from study.core.timing import measure
 
-SETTINGS = {"scenes": list,     # the most telling first
-            "steps": int,       # of a scene's stretch
-            "processes": int,   # of a scene
-            "samples": int}     # of a process and contender
+SETTINGS = {"scenes": list, "steps": int, "processes": int, "samples": int}
 
 
 def alternatives(lab):

@@ -1,4 +1,4 @@
-# What runs of a validation are held against: the motion of a scene on which two schemes agree.
+# What runs of a validation are held against: the motion of a scene on which two schemes agree, and which half the step leaves as it is.
 import math
 
 import numpy
@@ -13,7 +13,7 @@ GOLDEN = (5**0.5 - 1) / 2  # of the list, from one of them to the next: no kind 
 DENSE = 400     # instants of the reference, at least; between them cubics through positions and velocities
 DENSER, DENSEST = 4, 25600  # times as many where cubics would be off; at most
 INSTANTS = 150  # at which a run is compared, at least
-FIRST_STEP, HALVINGS = 5e-4, 4  # s, of the reference at most; how often it is halved until the schemes agree
+FIRST_STEP, HALVINGS = 5e-4, 5  # s, of the reference at most; how often it is halved until all agree
 SCHEMES = ("saddle-point", "penalty")
 
 
@@ -23,7 +23,8 @@ def spread(count):
 
 
 class Truth:
-    """`uncertainty`, m: by how much the two schemes differ at most, or cubics between the instants are off; infinite without a reference."""
+    """`uncertainty`, m: by how much the two schemes, or steps and half of them, differ at most, or cubics between the instants are off;
+    infinite without a reference."""
 
     def __init__(self, lab, scene, described, contender, duration, enough):
         self.duration, self.uncertainty = duration, math.inf
@@ -32,21 +33,22 @@ class Truth:
         points = [points[place] for place in spread(len(points))]
         self.columns, self.speeds = (tuple(f"{point}.{v}{axis}" for point in points for axis in axes) for v in ("", "v"))
         self.shape = (len(points), len(axes))
-        dense, halving = DENSE, 0
+        dense, halving, longer = DENSE, 0, None  # the motion of steps twice as long
         while halving < HALVINGS and dense <= DENSEST:
             every = max(1, math.ceil(duration / dense / FIRST_STEP * 2**halving))
             found = [self._extrapolated(lab, scene, contender, scheme, dense, every) for scheme in SCHEMES]
             if any(one is None for one in found):
-                halving += 1
+                halving, longer = halving + 1, None
                 continue
             self.motion, between = CubicHermiteSpline(*found[0]), self._between(*found[0])
-            self.uncertainty = max(between, self._distance(found[0][1], found[1][1]))
+            halved = math.inf if longer is None else self._distance(found[0][1], longer)
+            self.uncertainty = max(between, halved, self._distance(found[0][1], found[1][1]))
             if self.uncertainty <= enough:
                 return
             if between > enough:
-                dense *= DENSER
+                dense, longer = dense * DENSER, None
             else:
-                halving += 1
+                halving, longer = halving + 1, found[0][1]
 
     def every(self, step, duration):
         """Steps between two instants of a run."""

@@ -64,7 +64,7 @@ def questions(studyset):
 def _map(studyset):
     if not (studyset.folder / "map" / "cells.csv").exists():
         return
-    tables = {name: schema.read_table(studyset.folder, "map", name) for name in ("tidy", "verification")}
+    tables = {"tidy": schema.read_table(studyset.folder, "map", "tidy")}
     results = Results(tables, View(studyset.folder, "map"))
     for layer in LAYERS:
         for scene, rows in results.timing.groupby("scene"):
