@@ -20,11 +20,6 @@
 namespace mbs {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 constexpr double kSeconds = 60.0;  // of what ends by itself, however busy the machine is
 
 struct Expectation {
@@ -39,7 +34,7 @@ void PrintTo(const Expectation& expectation, std::ostream* stream) {
 
 /// A signal; sanitizers turn it into a report and an exit with status 1.
 std::string killed(const std::string& signal) {
-  return "^(killed by signal " + signal + (kSanitized ? "|exited with status 1 .*)" : ")") + "$";
+  return "^(killed by signal " + signal + (MBS_SANITIZE ? "|exited with status 1 .*)" : ")") + "$";
 }
 
 const Expectation kExpectations[] = {
@@ -98,7 +93,7 @@ class Control : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(Control, GetsItsVerdict) {
   const Expectation& expected = GetParam();
-  if (kSanitized && expected.control == "allocates") {
+  if (MBS_SANITIZE && expected.control == "allocates") {
     GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
   }
   // Most end by themselves, however busy the machine is.
@@ -175,7 +170,7 @@ TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
   EXPECT_EQ(lines_with(run.output, "^2 of 7 agree with the reference .unsupported: 1.$"), 1)
       << run.output;
   EXPECT_EQ(lines_with(run.output, "was here"), 0);
-  if (!kSanitized) {
+  if (!MBS_SANITIZE) {
     EXPECT_EQ(run.errors, "");
   }
   const auto rows = nlohmann::json::parse(test::file_text(file)).at("rows");
@@ -184,7 +179,7 @@ TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
 }
 
 TEST(ControlsProgram, HangingAndHungryOnesDoNotStopTheOthers) {
-  if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
+  if (MBS_SANITIZE) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
   // On a busy machine the others need more time than the one that hangs deserves: a second try.
   test::ProgramResult run;
   std::string limit;

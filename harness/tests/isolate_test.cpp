@@ -18,12 +18,6 @@
 namespace mbs {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kIsSanitized = true;
-#else
-constexpr bool kIsSanitized = false;
-#endif
-
 constexpr IsolationLimits kShortLimits{.seconds = 0.3};
 
 double seconds_of(const std::function<void()>& action) {
@@ -94,7 +88,7 @@ TEST(Isolate, ExitIsNoResult) {
     EXPECT_EQ(result.fate, Fate::crashed);
     EXPECT_EQ(result.reason, "exited with status " + std::to_string(status) + " before its result");
   }
-  if (kIsSanitized) return;  // whose report of leaks changes the status
+  if (MBS_SANITIZE) return;  // whose report of leaks changes the status
   EXPECT_EQ(run_isolated([]() -> std::string { std::exit(0); }).fate, Fate::crashed);
 }
 
@@ -251,7 +245,7 @@ TEST(Isolate, AnOutputFloodIsCutByTheLimit) {
 }
 
 TEST(Isolate, LimitsMemory) {
-  if (kIsSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
+  if (MBS_SANITIZE) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
   const auto take = [](std::size_t bytes) {
     return [bytes] {
       const std::string text(bytes, 'x');
@@ -268,7 +262,7 @@ TEST(Isolate, LimitsMemory) {
 TEST(Isolate, LeaksNoDescriptorsAndNoProcesses) {
   run_isolated([] { return std::string(); });
   const long before = open_descriptors();
-  const int runs = kIsSanitized ? 300 : 2000;
+  const int runs = MBS_SANITIZE ? 300 : 2000;
   for (int i = 0; i < runs; ++i) {
     const Isolated result = run_isolated([i]() -> std::string {
       if (i % 3 == 1) ::_exit(1);

@@ -32,7 +32,7 @@ struct Samples {
 };
 
 struct Run {
-  double reached = 0.0, setup_seconds = 0.0;
+  double reached = 0.0;
   std::vector<double> seconds;  // of each advance(); with repeats the least
   Samples samples;
 };
@@ -124,7 +124,6 @@ json report(const Program& program, const Options& options, const Mechanism& mec
             {"energy_drift_max", finite_or_null(judge.energy_drift())},
             {"joint_gap_max", finite_or_null(judge.gap())},
             {"judged", run.seconds.size()},
-            {"setup_seconds", run.setup_seconds},
             {"repeats", options.repeats},
             {"seconds", seconds},
             {"time", run.reached > 0.0 ? json(seconds / run.reached) : json(nullptr)},
@@ -144,9 +143,7 @@ int run_it(const Program& program, const Options& options) {
   Judge judge(mechanism);
   Run run;
   try {
-    const auto begin = Clock::now();
     const auto engine = program.create(mechanism, settings, options.duration);
-    run.setup_seconds = seconds(Clock::now() - begin);
     settings.require_all_taken();
     simulate(*engine, mechanism, options.duration, judge, run);
     for (int again = 1; again < options.repeats && finished(judge); ++again) {

@@ -412,18 +412,4 @@ bool is_conservative(const Model& model) {
          model.driven_points().empty() && model.driven_values().empty();
 }
 
-PointMotion point_motion(const Model& model, int point, double t, Coordinates q, Coordinates v,
-                         Coordinates a) {
-  const Motion motion(model, t, q, v);
-  PointMotion result{motion.position(point), motion.velocity(point),
-                     motion.known_acceleration(point)};
-  if (!motion.is_fixed(point)) {
-    for (int axis = 0; axis < model.dimension(); ++axis) {
-      const auto k = static_cast<std::size_t>(axis);
-      result.a[k] = a[static_cast<std::size_t>(motion.at(point).offset) + k];
-    }
-  }
-  return result;
-}
-
 }  // namespace mbs

@@ -1,7 +1,6 @@
 // Constraints, forces, mass and energy of a Model in plain double: how the harness judges a state.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,13 +69,5 @@ double energy(const Model& model, double t, std::span<const double> q, std::span
 /// Whether kinetic plus potential energy is constant: no damper, couple or driver, no law over a
 /// rate or with a factor of time.
 bool is_conservative(const Model& model);
-
-/// Position, velocity and acceleration of a point: from q, v, a if it is free, from its driver if
-/// it is driven. m, m/s, m/s^2; planar: the third component is 0.
-struct PointMotion {
-  std::array<double, 3> r{}, v{}, a{};
-};
-PointMotion point_motion(const Model& model, int point, double t, std::span<const double> q,
-                         std::span<const double> v, std::span<const double> a);
 
 }  // namespace mbs
