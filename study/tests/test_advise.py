@@ -449,14 +449,18 @@ def test_points_of_every_kind_are_compared_whatever_their_order():
 
 
 class Turning:
-    """A lab of one point that turns at 40 rad/s, exactly."""
+    """A lab of one point that turns at 40 rad/s, but for `off` times the third power of the step, in all schemes alike."""
+
+    def __init__(self, off=0.0):
+        self.off = off
 
     def run(self, cells):
         found = []
         for cell in cells:
             words = dict(zip(cell.settings[::2], cell.settings[1::2]))
             t = numpy.arange(0, round(float(words["--duration"]) / float(words["--step"])) + 1, cell.every) * float(words["--step"])
-            series = {"t": t, "p.x": numpy.cos(40 * t), "p.y": numpy.sin(40 * t), "p.vx": -40 * numpy.sin(40 * t), "p.vy": 40 * numpy.cos(40 * t)}
+            off = self.off * float(words["--step"])**3
+            series = {"t": t, "p.x": numpy.cos(40 * t) + off, "p.y": numpy.sin(40 * t), "p.vx": -40 * numpy.sin(40 * t), "p.vy": 40 * numpy.cos(40 * t)}
             found.append(SimpleNamespace(done=True, output={"status": "ok", "status_reason": ""}, series=series))
         return found
 
@@ -688,6 +692,15 @@ def test_each_scene_of_a_validation_has_a_folder_of_its_own(tmp_path, monkeypatc
         with pytest.raises(StudyError, match="enough"):
             validate.validate(SimpleNamespace(scene=[scene], only=[], wait=True), None, runner_of, tmp_path)
     assert len(set(folders)) == len(scenes) and {folder.parent for folder in folders} == {tmp_path / "scenes"}
+
+
+@pytest.mark.parametrize("duration", [0.03, 2.0])
+def test_the_reference_is_what_half_the_step_leaves_as_it_is(duration):
+    described = {"dimension": 2, "elements": {"points": [{"name": "p", "kind": "free"}]}}
+    first = duration / 400 / numpy.ceil(duration / 400 / 5e-4)  # its first step
+    truth = Truth(Turning(off=1e-5 / first**3), "scene.json", described, Contender("lib/one", "lib/one"), duration, 1e-7)
+    t = numpy.linspace(0.1, 0.9, 7) * duration
+    assert truth.uncertainty <= 1e-7 and truth.error({"t": t, "p.x": numpy.cos(40 * t), "p.y": numpy.sin(40 * t)}) <= 1e-7
 
 
 def question(scene, error, **more):

@@ -35,7 +35,7 @@ class Truth:
         self.shape = (len(points), len(axes))
         dense, halving, longer = DENSE, 0, None  # the motion of steps twice as long
         while halving < HALVINGS and dense <= DENSEST:
-            every = max(1, math.ceil(duration / dense / FIRST_STEP * 2**halving))
+            every = math.ceil(duration / dense / FIRST_STEP) * 2**halving
             found = [self._extrapolated(lab, scene, contender, scheme, dense, every) for scheme in SCHEMES]
             if any(one is None for one in found):
                 halving, longer = halving + 1, None
