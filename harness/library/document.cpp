@@ -125,8 +125,7 @@ double SceneDocument::number(const std::string& path) const {
     if (value.is_number()) return value.get<double>();
     throw Refused(
         fmt::format("{}: found the expression {}, allowed is a number: ask for the parameters that "
-                    "it names, or "
-                    "set one",
+                    "it names, or set one",
                     path, value.dump()));
   });
 }

@@ -177,9 +177,12 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
 
 json recommended(json description, const Scene& scene, StepSettings settings, bool counts) {
   const std::optional<Rule> rule = parse_rule(kRuleText);
-  const auto why_not = [&](const std::string& variant, Scheme scheme) {
+  const auto of = [&settings](Scheme scheme) {
     settings.scheme = scheme;
-    return why_not_offered(variant, scene.model, settings);
+    return settings;
+  };
+  const auto why_not = [&](const std::string& variant, Scheme scheme) {
+    return why_not_offered(variant, scene.model, of(scheme));
   };
   json found = recommendation_json(rule, description, why_not);
   if (counts && !found["recommendation"].empty()) {
@@ -194,7 +197,7 @@ json recommended(json description, const Scene& scene, StepSettings settings, bo
                                      [scheme == Scheme::penalty ? "AMD" : "saddle-point"];
       if (order.is_null()) continue;
       description["passes"][name_of(scheme)] =
-          count_passes(scene, settings, *by.variant, order["flops"]);
+          count_passes(scene, of(scheme), *by.variant, order["flops"]);
     }
     description["features"] = features_json(description);
     found = recommendation_json(rule, description, why_not);
