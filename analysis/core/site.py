@@ -26,7 +26,7 @@ def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
     view = View(folder, part)
-    tables, found = write_tables(folder, part)
+    tables, found = write_tables(view)
     drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
     about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {part}, profile {view.facts['profile']}"
     figures = {}  # {name: its file in base 64}
@@ -46,11 +46,10 @@ def write_part(folder, part):
         write_json(folder / part / name, known)
 
 
-def write_tables(folder, part):
+def write_tables(view):
     """(tables of a part, the records that they are made from)"""
-    view = View(folder, part)
-    found = schema.records_of(folder, part, view.context)
-    return schema.write_tables(folder, part, _module(part, "tables").build(found, view), found), found
+    found = schema.records_of(view.folder, view.part, view.context)
+    return schema.write_tables(view.folder, view.part, _module(view.part, "tables").build(found, view), found), found
 
 
 @without_collection()

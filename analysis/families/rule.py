@@ -1,4 +1,4 @@
-# A rule that predicts: how long a step takes with each library, and so which to take, from numbers of its structure and the passes of its steps.
+# A rule that predicts: how long a step takes with each library, and so which to take, from numbers of a scene's structure and the passes of its steps.
 #
 # A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), σ their scatter in the fit, the
 # least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution,

@@ -465,9 +465,13 @@ class Turning:
         return found
 
 
-def test_the_reference_has_as_many_instants_as_a_fast_motion_needs():
+def truth_of(lab, duration, enough):
     described = {"dimension": 2, "elements": {"points": [{"name": "p", "kind": "free"}]}}
-    truth = Truth(Turning(), "scene.json", described, Contender("lib/one", "lib/one"), 5.0, 1e-6)
+    return Truth(lab, "scene.json", described, Contender("lib/one", "lib/one"), duration, enough)
+
+
+def test_the_reference_has_as_many_instants_as_a_fast_motion_needs():
+    truth = truth_of(Turning(), 5.0, 1e-6)
     t = [0.31234, 4.87654]
     assert truth.uncertainty <= 1e-6 and truth.error({"t": t, "p.x": numpy.cos(40 * numpy.array(t)), "p.y": numpy.sin(
         40 * numpy.array(t))}) <= 1e-6
@@ -696,9 +700,8 @@ def test_each_scene_of_a_validation_has_a_folder_of_its_own(tmp_path, monkeypatc
 
 @pytest.mark.parametrize("duration", [0.03, 2.0])
 def test_the_reference_is_what_half_the_step_leaves_as_it_is(duration):
-    described = {"dimension": 2, "elements": {"points": [{"name": "p", "kind": "free"}]}}
     first = duration / 400 / numpy.ceil(duration / 400 / 5e-4)  # its first step
-    truth = Truth(Turning(off=1e-5 / first**3), "scene.json", described, Contender("lib/one", "lib/one"), duration, 1e-7)
+    truth = truth_of(Turning(off=1e-5 / first**3), duration, 1e-7)
     t = numpy.linspace(0.1, 0.9, 7) * duration
     assert truth.uncertainty <= 1e-7 and truth.error({"t": t, "p.x": numpy.cos(40 * t), "p.y": numpy.sin(40 * t)}) <= 1e-7
 

@@ -9,9 +9,9 @@ import pytest
 from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
+from analysis.core.view import View
 from study.tests.conftest import study
 from study.tools import fragments
-from study.tools.fragments import main_set
 
 TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
@@ -91,13 +91,13 @@ def test_a_stored_set_has_all_parts(folder):
 def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     """The main one with its pages; of the others, which the same code draws, the tables."""
     copy = shutil.copytree(folder, tmp_path / folder.name)  # whose records are of one machine and commit, or it is not drawn
-    if folder == main_set():
+    if folder == fragments.main_set():
         done = study("figures", copy, seconds=1500)
         assert done.returncode == 0, done.stderr
         assert [part for part in parts() if not (copy / f"{part}.html").exists()] == []
     else:
         for part in parts():
-            site.write_tables(copy, part)
+            site.write_tables(View(copy, part))
     for part in parts():
         # What set and code share, as a set of another state of the code may have more or less. References are integrated anew: another
         # processor takes other steps, so errors differ to their tolerance, and what two tolerances differ by in any digit.
