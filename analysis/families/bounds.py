@@ -40,7 +40,7 @@ def _losses(rule, found, count):
 
 
 def _agreement(scenes, mechanisms):
-    """Who is slow is not asked where its check would take long: of it nothing is known."""
+    """Of who was not asked, as the budget was spent, nothing is known."""
     asked = ~scenes.verdict.isin(["", "dropped"])
     wrong = scenes[asked & (scenes.verdict != "agrees")]
     unasked = int((~asked & (scenes.step_us.notna() | scenes.look_us.notna())).sum())

@@ -27,6 +27,7 @@ struct CheckOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> implementations;
   StepOptions step;
+  int steps = 800;
   double time_limit = 120.0;
   std::string json;
   bool ladder = false;
@@ -120,7 +121,7 @@ void check_scene(const CheckOptions& options, const Scene& scene,
   };
   ReferenceRun reference;  // not run for nobody: on a large scene it takes minutes
   if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {
-    reference = run_reference(scene, settings);
+    reference = run_reference(scene, settings, options.steps);
   }
   for (const std::string& warning : setting_warnings(
            scene.model, settings,
@@ -182,6 +183,10 @@ void add_check_command(CLI::App& app, int& status) {
       ->allow_extra_args(false)
       ->delimiter(',');
   options->step.add_to(*command);
+  command->add_option("--steps", options->steps,
+                      "of the motion that is compared, at most; fewer from 500 variables up")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 800));
   command->add_option("--time-limit", options->time_limit, "s a scene and implementation")
       ->capture_default_str();
   command->add_option("--json", options->json, "write the verdicts to this file too");

@@ -43,6 +43,13 @@ TEST(CheckProgram, WhatAStiffDamperLeavesIsNoDisagreement) {
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
 }
 
+TEST(CheckProgram, ComparesAsManyStepsAsAskedFor) {
+  const auto run = test::run_program(
+      MBS_CONTROLS, "check four-bar:2 --steps 17 --implementation control/reference");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_NE(run.output.find("m; 17 of 17 steps"), std::string::npos) << run.output;
+}
+
 TEST(CheckProgram, AFileMayHaveAnyName) {
   const test::Folder folder;
   const std::string scene = folder.file("\xff.json"), verdicts = folder.file("verdicts");
@@ -169,6 +176,9 @@ TEST(CheckProgram, RefusesBadInput) {
   expect_check_refusal("four-bar:1 --max-passes 0", "--max-passes");
   for (const char* value : {"0", "-1", "nan", "inf", "abc"}) {
     expect_check_refusal(std::string("four-bar:1 --time-limit ") + value, "--time-limit");
+  }
+  for (const char* value : {"15", "801"}) {
+    expect_check_refusal(std::string("four-bar:1 --steps ") + value, "16 to 800");
   }
   expect_check_refusal("four-bar:1 --json /no/such/folder/x.json", "/no/such/folder/x.json");
 }

@@ -10,6 +10,7 @@ NEAR = 2.0  # times the fastest library: who takes longer has no further times
 WIDE = 4.0  # the same, of those that are named
 STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
+SHORT = ("--steps", 16)  # of the gate for those who are too slow to be timed further: the fewest that it judges by
 
 
 # Of the gate: whose motion agrees with the reference's on a scene. settings: of the step.
@@ -52,19 +53,18 @@ class Form:
     stretch: tuple = ()    # that is timed, else the scene's
     look: int = STEPS      # steps of the look
     patience: float = 1.0
-    gated: float = 0.0     # µs a step, up to which the gate is asked of those, too, who are too slow to be timed
 
 
 def contests(lab, scene, forms, *, own, always=False, control=False):
-    """[rows of the look] of each form; what the gate is asked of all runs at once. `own`: names of those that are no libraries;
+    """[rows of the look] of each form; the gate is asked of all who have a time, of all forms at once. `own`: names of those that are no libraries;
     `always`: they are gated and timed whatever they take; `control`: the fastest library is timed beside itself."""
     looks = [rows_of(measure(lab, scene, form.contenders, processes=1, repetitions=1, role=f"{form.role}-look",
                              settings=("--steps", form.look, "--patience", form.patience, *form.settings))) for form in forms]
     chosen = [near(rows, form.contenders, own, always, form.wide) for form, rows in zip(forms, looks)]
-    asked = [Asked(scene, [one for one in form.contenders if one in timed or one.name in known and known[one.name] <= form.gated],
-                   f"{form.role}-gate", form.settings) for form, known, timed in zip(forms, map(times_of, looks), chosen)]
-    for form, rows, timed, agrees in zip(forms, looks, chosen, agreeing(lab, asked, each=CHECK_S, drop=True)):
-        here = [one for one in agrees if one in timed]
+    asked = [Asked(scene, timed, f"{form.role}-gate", form.settings) for form, timed in zip(forms, chosen)]
+    slow = [one._replace(contenders=[who for who in form.contenders if who.name in known and who not in one.contenders],
+                         settings=(*one.settings, *SHORT)) for form, known, one in zip(forms, map(times_of, looks), asked)]
+    for form, rows, here in zip(forms, looks, agreeing(lab, asked + slow, each=CHECK_S, drop=True)):
         if control:
             times = times_of(rows)
             here += [twin_of(one) for one in sorted((one for one in here if one.name not in own), key=lambda one: times[one.name])[:1]]

@@ -14,8 +14,6 @@ STEPS = 100  # of the stretch that is timed, but on the four-bar: others take ab
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long
 SHORT_S, LONG_S = 0.002, 0.01  # of a step: up to the one the four-bar keeps its stretch, above the other stretches are shorter
 MOST_S = 0.25  # of a step, beyond which a form is not timed: the gate, in long double, would take longer than all else
-GATED = 1 / 7000  # of the part's seconds: a check up to which the gate is asked of who is too slow to be timed
-CHECKED = (16, 800, 4e5)  # steps of a check: at least, at most; times variables (harness/src/check/reference_run.cpp)
 FLOPS, ENTRIES = 2e-9, 2e-8  # s a step, about, for one operation of `mbs describe` and one non-zero of L
 
 
@@ -44,20 +42,13 @@ def run(lab, column):
                 continue
             shorter = LONG_S / max(step_s, LONG_S)
             look = max(4, round(LOOK * shorter))
-            gated = 1e6 * GATED * lab.settings["seconds"] / _checked(record)
             processes = lab.settings["processes"][scheme]
             forms.append(Form(scheme, [one for one in chosen if one not in behind], min(processes, PROCESSES if shorter < 1 else 99),
-                              lab.settings["samples"], setting.words(), compared.get(scheme, ()), look=look, gated=gated,
+                              lab.settings["samples"], setting.words(), compared.get(scheme, ()), look=look,
                               patience=max(1.0, 2 * look * step_s),
                               stretch=() if scene.startswith("four-bar:") and step_s < SHORT_S else ("--steps", max(4, round(STEPS * shorter)))))
         for form, rows in zip(forms, contests(lab, scene, forms, own=lab.registry.own, control=scene in controls)):
             looks.setdefault((shape(scene), form.role), []).append(multiples(rows, lab.registry.libraries))
-
-
-def _checked(record):
-    """Steps of a check, as the program chooses them."""
-    least, most, all_variables = CHECKED
-    return min(max(all_variables / record.output["variables"], least), most) if record.done else most
 
 
 def expected(record, scheme):

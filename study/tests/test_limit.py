@@ -84,30 +84,23 @@ def test_the_gates_of_all_forms_run_at_once_after_the_looks(measured):
     assert batches == [["penalty-gate", "saddle-point-gate"]]
 
 
-def test_the_gate_is_asked_of_the_slow_too_where_that_costs_little(measured):
+def test_the_gate_compares_fewer_steps_of_the_slow(measured):
     times = {"one/a": 1.0, "one/b": 9.0, "own/x": 0.5, "own/y": 12.0}
     measured.said = lambda scene, names: rows(**{name.replace("/", "_"): times[name] for name in names if name in times})
-    for gated, more in ((0.0, []), (10.0, ["one/b"])):
-        lab = Asked()
-        contest.contests(lab, "ladder:2", [contest.Form("penalty", lab.contenders, 2, 1, gated=gated)], own=REGISTRY.own)
-        [check] = [cell for cell in lab.cells if cell.kind == "check"]
-        assert sorted(one.name for one in check.contenders) == sorted(["one/a", "own/x", *more])
-        assert measured.asked[-1][2] == ["one/a", "own/x"]
+    lab = Asked()
+    contest.contests(lab, "ladder:2", [contest.Form("penalty", lab.contenders, 2, 1, ("--scheme", "penalty"))], own=REGISTRY.own)
+    checks = {cell.settings: [one.name for one in cell.contenders] for cell in lab.cells if cell.kind == "check"}
+    assert [(words[:2], words[2:4], sorted(names)) for words, names in checks.items()] == [
+        (("--scheme", "penalty"), ("--time-limit", "60"), ["one/a", "own/x"]), (("--scheme", "penalty"), ("--steps", 16), ["one/b", "own/y"])]
+    assert measured.asked[-1][2] == ["one/a", "own/x"]
 
 
 def test_families_have_controls_from_small_to_large(monkeypatch):
-    asked, gated = [], set()
+    asked = []
     monkeypatch.setattr(families, "about", lambda lab, scenes: [SimpleNamespace(done=False)] * len(scenes))
-    monkeypatch.setattr(families, "contests", lambda lab, scene, forms, *, control, **_: asked.append((scene, control)) or [
-        gated.add(form.gated) or rows() for form in forms])
-    families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}, seconds=7000), "mechanisms")
+    monkeypatch.setattr(families, "contests", lambda lab, scene, forms, *, control, **_: asked.append((scene, control)) or [rows() for _ in forms])
+    families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}), "mechanisms")
     assert {scene for scene, control in asked if control} == {"chain:0", "chain:2", "chain:4"} and len(asked) == 6
-    assert gated == {1250.0}  # of 800 steps, the most that a check has, within a second
-
-
-def test_a_check_has_fewer_steps_on_large_scenes():
-    steps = [families._checked(SimpleNamespace(done=True, output={"variables": n})) for n in (100, 500, 2000, 20000, 40000)]
-    assert steps == [800, 800, 200, 20, 16]
 
 
 def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):
@@ -149,7 +142,7 @@ def test_after_a_look_at_everyone_those_are_timed_that_are_near_and_agree(measur
     assert "--steps" in look and "--steps" not in problem
     assert problem[problem.index("--step") + 1] == "0.001" and "--step" not in fill
     gates = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene]
-    assert [one.name for cell in gates for one in cell.contenders] == names and gates[0].settings[:2] == ("--step", "0.001")
+    assert [[one.name for one in cell.contenders] for cell in gates] == [names, ["one/b"]] and gates[0].settings[:2] == ("--step", "0.001")
     lab.wrong, measured.asked[:] = ("one/a",), []
     plan.run(lab, "scenes")
     assert measured.asked[1][2] == ["own/x"]
