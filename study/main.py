@@ -10,7 +10,7 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.studyset import (StudySet, beginning, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
+from study.core.studyset import (StudySet, beginning, listed, need_own, need_records, need_tables, opened, reopen, select, start, unfinished,
                                  writable)
 
 TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
@@ -92,9 +92,8 @@ def _run_here(profile, only, chosen, folder, wait):
 
 def figures(arguments):
     parser = Parser(prog="study/figures", description="Draws every table, figure and page of a set again, from its records.")
-    parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
-    given = parser.parse_args(arguments).set
-    folder = given or newest(ROOT / "results")
+    parser.add_argument("set", nargs="?", type=directory, help="its directory (the main one of results/)")
+    folder = parser.parse_args(arguments).set or importlib.import_module("study.tools.fragments").main_set()
     studyset = opened(folder)
     writable(folder)
     with locks.only_one(folder):

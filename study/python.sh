@@ -9,9 +9,9 @@ look='import importlib.util
 print(*(name for name in "yaml numpy pandas scipy matplotlib jinja2 snakemake".split() if not importlib.util.find_spec(name)))'
 missing=$("${python[@]}" -c "$look" 2> /dev/null) || missing='Python 3.11'
 if [[ $missing ]]; then
-  if [[ "$1" != run || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
+  if [[ "$1" != run || " $* " == *" --dry"* || " $* " == *" --l"* || " $* " == *" --h"* || " $* " == *" -h "* ]]; then
     echo "study/$1: missing for /usr/bin/python3: $missing (run study/setup)" >&2
-    exit 1
+    exit 2
   fi
   "$here/setup" --no-build
 fi

@@ -2,6 +2,7 @@
 from analysis.accuracy import pairs
 from analysis.accuracy.winners import LAYERS, NOT_TIMED, met
 from analysis.core.text import between, bounded, number
+from study.core.setting import read_settings
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
 
@@ -20,14 +21,15 @@ def answers(tables, view):
 
 
 def cases(tables, view):
-    """Row of the front page's table: at the largest size what each error takes, those that take the same together; a setting is
-    worth nothing without its step."""
+    """Row of the front page's table: at the largest size what each error takes, those that take the same together."""
     won = met(own_fill(tables["winners"]))
     rows = won[(won.layer == "libraries") & (won.variables == won.variables.max())].sort_values("required", ascending=False)
+    options = {one.name: " ".join(one.words()).removeprefix("--scheme penalty").strip() for one in read_settings()}
     errors = {}
     for one in rows.itertuples():
-        take = f"{one.implementation}, setting {one.setting}, step {number(1e3 * one.step, 2)} ms" + (
-            "" if one.settled else " (others are not shown to be slower)")
+        given = options.get(one.setting, f"setting {one.setting}")
+        take = f"{one.implementation}, {f'`{given}`, ' if given else ''}step {number(1e3 * one.step, 2)} ms" + (
+            "" if one.settled else " (undecided: others may be as fast)")
         errors.setdefault(take, []).append(number(one.required))
     said = "; ".join(f"{', '.join(mine)} m: {take}" for take, mine in errors.items())
     return [{"case": "You know the error that the motion may have", "link": "accuracy.html#short",

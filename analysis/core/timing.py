@@ -13,7 +13,7 @@ import pandas
 from scipy import special  # scipy.stats has the same functions, a hundred times slower
 
 from analysis.core.gather import gather
-from analysis.core.registry import NULL, TWIN
+from analysis.core.registry import ANCHOR, NULL, TWIN
 
 CONFIDENCE = 0.95
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
@@ -171,7 +171,8 @@ def student(values, more=0.0, of=1):
 
 
 def log_ratios(rows, first, second):
-    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that both environments have."""
+    """{process: logarithm of the ratio}. Contenders of different environments are compared through the ANCHOR, whose time does not depend on
+    the environment. Where it was left out: through another variant that both have, never one of the two, as these may."""
     logs = paired(rows).logs
     mine, other = (logs.get(name, {}) for name in (first, second))
     direct = {key[1]: _median(mine[key], other[key]) for key in sorted(set(mine) & set(other))}
@@ -179,7 +180,8 @@ def log_ratios(rows, first, second):
         return direct
     environments = [next(iter(one))[0] for one in (mine, other)]
     there = [{name.partition("+")[0]: found for name, found in logs.items() if any(key[0] == one for key in found)} for one in environments]
-    anchor = min(there[0].keys() & there[1].keys(), default=None)
+    shared = there[0].keys() & there[1].keys()
+    anchor = ANCHOR if ANCHOR in shared else min(shared - {name.partition("+")[0] for name in (first, second)}, default=None)
     first, second = ({key[1]: _median(samples, known[anchor][key]) for key, samples in one.items() if key in known.get(anchor, ())}
                      for one, known in zip((mine, other), there))
     return {number: first[number] - second[number] for number in sorted(first.keys() & second.keys())}

@@ -6,6 +6,7 @@ from scipy import special
 from analysis.accuracy.winners import NEAR
 from analysis.core import timing
 from analysis.core.files import ROOT, from_yaml
+from analysis.core.registry import ANCHOR
 from analysis.core.style import Look
 from analysis.core.view import Folder, facts_of
 from analysis.explorer import data
@@ -26,7 +27,7 @@ def context(folder):
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
              "settings": {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}"
                                                 for key, value in one.get("options", {}).items()) for one in settings},
-             "equivalent": timing.EQUIVALENT, "near": NEAR,
+             "equivalent": timing.EQUIVALENT, "anchor": ANCHOR, "near": NEAR,
              "quantiles": special.stdtrit(range(1, MOST), (1 + timing.CONFIDENCE) / 2).tolist()}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return {"data": text.replace("<", "\\u003c"), "examples": [*examples(contests, registries[0])]}

@@ -47,7 +47,7 @@ class Paired {
       .map((key) => [mine.get(key).number, difference(mine.get(key), other.get(key))]));
     if (direct.size || !mine.size || !other.size) return direct;
     const environments = [mine, other].map((one) => one.values().next().value.environment);
-    const anchors = this.common(environments);
+    const anchors = this.common(environments, [first, second]);
     const found = new Map();
     if (!anchors) return found;
     for (const one of mine.values()) {
@@ -58,13 +58,15 @@ class Paired {
     return found;
   }
 
-  // Logs, one in each environment, of a variant that both have: through it contenders of different environments are compared.
-  common(environments) {
+  // Logs, one in each environment, of a variant that both have: through it the contenders of `pair`, of different environments, are compared.
+  common(environments, pair) {
+    const base = (name) => name.split("+")[0];
     const names = environments.map((environment) => new Map([...this.logs]
       .filter(([, found]) => [...found.values()].some((one) => one.environment === environment))
-      .map(([name, found]) => [name.split("+")[0], found])));
-    const shared = [...names[0].keys()].filter((name) => names[1].has(name)).sort();
-    return shared.length ? names.map((one) => one.get(shared[0])) : null;
+      .map(([name, found]) => [base(name), found])));
+    const shared = [...names[0].keys()].filter((name) => names[1].has(name)).sort(), others = shared.filter((name) => !pair.map(base).includes(name));
+    const anchor = shared.includes(DATA.anchor) ? DATA.anchor : others[0];
+    return anchor ? names.map((one) => one.get(anchor)) : null;
   }
 
   // Who is fastest among `names`; null if none of them was timed.

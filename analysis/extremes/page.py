@@ -9,7 +9,7 @@ WORDS = {"silent": "silently wrong", "other": "other failure", "unjudged": "ok o
 
 
 def context(tables, view):
-    return {"settings": view.settings, "battery": _battery(tables["battery"]), "kinds": {kind: WORDS.get(kind, kind) for kind in battery.KINDS},
+    return {"battery": _battery(tables["battery"]), "kinds": {kind: WORDS.get(kind, kind) for kind in battery.KINDS},
             "pivots": _pivots(tables["pivots"], tables["claims"])}
 
 

@@ -63,10 +63,10 @@ def cases(tables, view):
                       "take": _taken(rows) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
-        names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
+        names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items()) + f" of {len(ahead)} scenes"
         found.append({"case": "You may take code that is no library", "link": "families.html#map",
                       "take": f"fastest: {names}; {number(1 / ahead.to_rival.max())} to {number(1 / ahead.to_rival.min())} times as fast as the fastest "
-                              f"library, {number(1 / ahead.to_rival.median())} in the middle"})
+                              f"library, median {number(1 / ahead.to_rival.median())}"})
     return found
 
 

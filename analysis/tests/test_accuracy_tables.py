@@ -241,7 +241,7 @@ def test_the_answers_name_both_layers_and_what_reuse_saves(found):
     assert said[1].startswith("Of all, code without a library included, own/code is fastest")
     assert any("every-step saves the most factorizations, 50 %" in one for one in said)
     [case] = sentences.cases(made, seen)
-    assert "an error of 0.001 m: lib_a/fast, setting rattle, step 20 ms; " in case["take"]
+    assert "an error of 0.001 m: lib_a/fast, `--scheme rattle`, step 20 ms; " in case["take"]
     assert {one["anchor"] for one in sentences.answers(made, seen)} <= set(re.findall('id="([^"]+)"', render(made, seen)))
 
 

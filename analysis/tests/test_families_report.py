@@ -84,7 +84,7 @@ def test_figure_page_and_sentences_of_a_small_set_and_of_none():
     texts = [one["text"] for one in sentences.answers(small(), VIEW)]
     assert "one/a on 2, one/b on 1" in texts[0] and "faster than the fastest library on 1 of 1" in texts[1]
     [case] = sentences.cases(small(), VIEW)  # too few mechanisms for a rule
-    assert case["take"] == "fastest: own/x on 1; 2 to 2 times as fast as the fastest library, 2 in the middle"
+    assert case["take"] == "fastest: own/x on 1 of 1 scenes; 2 to 2 times as fast as the fastest library, median 2"
     assert sentences.cases(made(), VIEW) == []
 
 

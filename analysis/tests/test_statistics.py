@@ -6,6 +6,7 @@ import pandas
 import pytest
 
 from analysis.core.records import Record
+from analysis.core.registry import ANCHOR
 from analysis.core.timing import counted, median, power_law, rank, ratio
 from analysis.core import controls, timing
 from analysis.core.controls import disturbance, told
@@ -46,6 +47,15 @@ def test_other_environments_are_compared_through_what_they_have_in_common():
     table = pandas.DataFrame(rows("a", {1: (2.0,), 2: (2.0,)}, "one") + rows("k", {1: (1.0,), 2: (1.0,)}, "one")
                              + rows("b", {1: (9.0,), 2: (9.0,)}, "two") + rows("k+two", {1: (3.0,), 2: (3.0,)}, "two"))
     assert ratio(table, "b", "a").value == pytest.approx(1.5)
+
+
+def test_who_depends_on_the_environment_is_not_what_two_are_compared_through():
+    """Another library gains in the other environment; the anchor does not."""
+    table = pandas.DataFrame([row for name, here, there in (("a", 2.0, 1.0), (ANCHOR, 1.0, 1.0), ("b", 4.0, 1.0))
+                              for row in (*rows(name, {1: (here,), 2: (here,)}, "one"), *rows(f"{name}+two", {1: (there,), 2: (there,)}, "two"))])
+    assert ratio(table, "a", "a+two").value == pytest.approx(2.0)
+    assert ratio(table, "b", "a+two").value == pytest.approx(4.0)
+    assert math.isnan(ratio(table[~table.implementation.str.startswith((ANCHOR, "b"))], "a", "a+two").value)
 
 
 @pytest.mark.parametrize("processes", [5, 9])  # quick, full

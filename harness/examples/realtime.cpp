@@ -71,11 +71,12 @@ int main(int argc, char** argv) try {
   const double seconds = argc > 2 ? number("SECONDS", argv[2]) : 5.0;
   mbs::StepperOptions options{.implementation = argc > 3 ? argv[3] : "auto"};
   options.settings.step = 1e-3;
+  options.settings.max_passes = 6;  // bounds the longest step; far more than are usual
   mbs::Stepper car(mbs::SceneDocument::load(argv[1]), options);
   const int wheel = car.input("road FL");
   const long period = std::lround(car.settings().step * kSecond);
   if (!(seconds >= car.settings().step)) throw mbs::Refused("SECONDS: a step or more");
-  const auto steps = static_cast<std::size_t>(seconds / car.settings().step);
+  const auto steps = static_cast<std::size_t>(std::lround(seconds / car.settings().step));
   std::vector<long> working, waking;  // filled in the loop, so that it allocates nothing
   working.reserve(steps);
   waking.reserve(steps);

@@ -12,6 +12,7 @@ struct BatchStepper::Content {
   std::vector<StepOutcome> outcomes;
   std::vector<char> has_failed;
   std::unique_ptr<BatchSimulation> batch;  // null: each lane has its simulation
+  long steps = 0;
 
   [[nodiscard]] Stepper::Content& lane(int index) {
     if (index < 0 || index >= static_cast<int>(lanes.size())) {
@@ -63,9 +64,10 @@ BatchStepper::BatchStepper(std::span<const SceneDocument> scenes, const StepperO
       const Stepper::Content& first = *content_->lanes.front();
       const Stepper::Content& last = *content_->lanes.back();
       if (last.input_names != first.input_names || last.output_names() != first.output_names()) {
-        throw Refused(fmt::format(
-            "scene {} of the batch has other inputs or outputs than the first, allowed are the same",
-            content_->lanes.size()));
+        throw Refused(
+            fmt::format("scene {} of the batch has other inputs or outputs than the first, allowed "
+                        "are the same",
+                        content_->lanes.size()));
       }
       const Choice& chosen = first.choice;
       of_all.implementation = chosen.variant.name;
@@ -108,6 +110,7 @@ void BatchStepper::set_input(int lane, int input, double value, double rate, dou
 
 std::span<const StepOutcome> BatchStepper::step() {
   Content& c = *content_;
+  ++c.steps;
   if (c.batch) c.batch->step(c.outcomes);
   for (std::size_t i = 0; i < c.lanes.size(); ++i) {
     if (c.has_failed[i]) {
@@ -123,10 +126,14 @@ std::span<const StepOutcome> BatchStepper::step() {
   return c.outcomes;
 }
 
+double BatchStepper::t() const { return static_cast<double>(content_->steps) * settings(0).step; }
+
 const State& BatchStepper::state(int lane) {
   Stepper::Content& of = content_->lane(lane);
-  const bool has_failed = content_->has_failed[static_cast<std::size_t>(lane)] != 0;
-  if (!of.is_current && content_->batch && !has_failed) content_->batch->get_state(lane, of.state);
+  if (content_->has_failed[static_cast<std::size_t>(lane)] != 0) {
+    throw Refused(fmt::format("lane {}: a step of it failed, so it has no state", lane));
+  }
+  if (!of.is_current && content_->batch) content_->batch->get_state(lane, of.state);
   if (!of.is_current && of.simulation) of.simulation->get_state(of.state);
   of.is_current = true;
   return of.state;

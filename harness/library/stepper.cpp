@@ -84,8 +84,7 @@ std::size_t place_of(int index, const std::vector<std::string>& names, const cha
 StepSettings chosen_settings(const Scene& scene, StepSettings settings) {
   require_step(settings.step);
   require_combination(settings);
-  if (settings.penalty == 0.0) settings.penalty = automatic_penalty(scene.model, settings);
-  if (settings.tolerance == 0.0) settings.tolerance = automatic_tolerance(scene.model, settings);
+  settings = chosen(scene.model, settings);
   RunSettings first;
   first.step = settings;
   first.duration = settings.step;

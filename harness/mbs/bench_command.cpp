@@ -38,7 +38,8 @@ struct Shown {
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown& shown) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
-                 "folder or folder/variant, several by commas or repeated (default: all but examples and what was "
+                 "folder or folder/variant, several by commas or repeated (default: all but "
+                 "examples and what was "
                  "tried, and the control "
                  "null/null that does nothing); NAME+twin is a second instance of a variant")
       ->allow_extra_args(false)
@@ -47,7 +48,8 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
   app.add_option("--steps", request.steps,
                  "steps of the stretch (default: 800, fewer above 400 variables or to be centred)");
   app.add_option("--start", request.start,
-                 "start of the stretch, s (default: centred on the first singular position)");
+                 "start of the stretch of the four-bar, s (default: centred on the first singular "
+                 "position); other scenes start at 0");
   app.add_option("--slower-than", request.slower_than,
                  "leave out whoever takes more than F times as long as the fastest (default: time "
                  "all)");
@@ -69,9 +71,10 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
       "--batch", request.batch,
       "instead of single simulations, time parameter sets in batches of as many as a variant is "
       "best given, and alone: step_us and alone_us are of one of them, gain is their ratio");
-  app.add_option("--sets", request.sets,
-                 "of --batch: parameter sets, spread evenly over a range of 28 % in masses and of "
-                 "14 % in lengths (default: 64)");
+  app.add_option(
+      "--sets", request.sets,
+      "of --batch: parameter sets, spread evenly over a range of 28 % in masses, of 14 % in "
+      "lengths and of 64 % in forces (default: 64)");
 }
 
 /// Whether the summary is what to show. Throws UsageError for what does not go together.
@@ -85,6 +88,17 @@ bool shows_summary(const Shown& shown, const BenchRequest& request, const BenchF
   if (shown.summary) return true;
   return ::isatty(STDOUT_FILENO) != 0 && !shown.rows && !flags.format_given && flags.out.empty() &&
          !request.operations && !request.batch;
+}
+
+/// Operations take the step and the penalty factor, and know nothing else of a step.
+void require_no_step_settings(const CLI::App& app) {
+  for (const char* name :
+       {"--tolerance", "--max-passes", "--scheme", "--multipliers", "--tangent", "--projections",
+        "--projections-every", "--precision", "--geometric-stiffness"}) {
+    if (app.get_option(name)->count() > 0) {
+      throw UsageError(fmt::format("{} is one of steps: it does not go with --operations", name));
+    }
+  }
 }
 
 bool asks_for_help(int argc, char** argv) {
@@ -172,6 +186,7 @@ int bench_command(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (mbs bench --help)", error.what()));
   }
+  if (request.operations) require_no_step_settings(app);
   request.summary = shows_summary(shown, request, flags);
   request.watch = show_doing;
   const BenchPlan plan = plan_bench(request);

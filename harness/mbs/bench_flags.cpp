@@ -64,7 +64,7 @@ BenchFlags take_benchmark_flags(int& argc, char** argv) {
     // Help never comes here; for a wrong value the library prints its usage and exits with status
     // 0.
     throw UsageError(
-        "--benchmark_format and --benchmark_out_format are one of console, json, csv; "
+        "--benchmark_format is one of console, json, csv; --benchmark_out_format is json; "
         "--benchmark_time_unit is one of ns, us, ms, s");
   });
   check_flags(out);

@@ -179,7 +179,8 @@ void add_check_command(CLI::App& app, int& status) {
   command->add_option("scenes", options->scenes,
                       "scenes (default: four-bar:1 four-bar:10 four-bar:10,fill=0.6 four-bar:40)");
   command->add_option("--implementation", options->implementations,
-                      "folder or folder/variant, several by commas or repeated (default: all)")
+                      "folder or folder/variant, several by commas or repeated (default: all but what "
+                      "was tried)")
       ->allow_extra_args(false)
       ->delimiter(',');
   options->step.add_to(*command);

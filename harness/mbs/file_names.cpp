@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "printable.hpp"
+#include "scene/families/families.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -25,6 +26,11 @@ bool is_same_file(const std::string& a, const std::string& b) {
 
 void require_not_scene(const std::string& option, const std::string& path,
                        const std::string& scene) {
+  const bool is_table = path.ends_with(".csv") || path.ends_with(".json") || path.ends_with(".gz");
+  if (!is_table && (path.starts_with("four-bar:") || is_family_scene(path))) {
+    throw UsageError(fmt::format("{}: found {}, the name of a scene, allowed is a file", option,
+                                 in_quotes(path)));
+  }
   std::error_code error;
   if (path.empty() || !fs::exists(scene, error) || !is_same_file(path, scene)) return;
   throw UsageError(fmt::format("{}: found {}, the scene's own file, allowed is another", option,

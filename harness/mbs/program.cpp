@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 #include "environment/blas.hpp"
@@ -21,26 +20,13 @@ namespace {
 
 constexpr const char* kScenes =
     "A SCENE is four-bar:N (the N-loop four-bar mechanism), four-bar:N,fill=F (with artificial\n"
-    "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), one of a family of\n"
-    "mechanisms such as ladder:12 (mbs list --scenes has all), or a JSON file.";
+    "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1; ,seed=S for others), one\n"
+    "of a family of mechanisms such as ladder:12 (mbs list --scenes has all), or a JSON file.";
 constexpr const char* kVaried =
     "A SCENE is four-bar:N (the N-loop four-bar mechanism), one of a family (mbs list --scenes) or\n"
     "a JSON file. A lane whose start cannot be assembled is not-assembled; the others end as one\n"
     "run does.";
-constexpr const char* kExits = "Exit status: 0 done, 1 a result that is not right, 2 bad input.";
-
-/// A positive, finite number from "auto" or text.
-double parse_tolerance(const std::string& text, const Model& model, const StepSettings& settings) {
-  if (text == "auto") return automatic_tolerance(model, settings);
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !(value > 0.0) || !(value < 1e300)) {
-    throw UsageError(
-        fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)", text));
-  }
-  return value;
-}
+constexpr const char* kExits = "Exit status: 0 done, 1 a result that is not right, 2 bad input, or a file or memory failed.";
 
 /// An option whose value is one of the names of a choice.
 template <class Choice>
@@ -66,7 +52,7 @@ std::string outcomes_text() {
     text += fmt::format("  {:<14} {}\n", name, meaning);
   }
   return text +
-         "Exit status 2: the input was refused and nothing was run; standard error says why.";
+         "Exit status 2: bad input, or a file or memory failed; standard error says why.";
 }
 
 bool is_subcommand(const CLI::App& app, const std::string& name) {
@@ -152,9 +138,9 @@ StepSettings StepOptions::resolve(const Model& model) const {
     throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", result.max_passes));
   }
   require_combination(result);
-  result.penalty = parse_penalty(penalty, model, result);
-  result.tolerance = parse_tolerance(tolerance, model, result);
-  return result;
+  result.penalty = parse_automatic("--penalty", penalty);
+  result.tolerance = parse_automatic("--tolerance", tolerance, " (m)");
+  return chosen(model, result);
 }
 
 int run_program(int argc, char** argv) {

@@ -8,6 +8,7 @@
 #include "mbs/commands.hpp"
 #include "reference/reference_simulation.hpp"
 #include "registry/setting_names.hpp"
+#include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"
@@ -142,10 +143,10 @@ int print_reference(ReferenceOptions& options) {
         fmt::format("scene '{}' has {} variables: matrices are printed in full, of {} at most",
                     scene.name, scene.model.variables(), kMost));
   }
+  require_drivers(scene, options.settings.step, options.after + 1);
   StepSettings settings = options.settings;
-  settings.penalty = parse_penalty(options.penalty, scene.model, settings);
-  settings.tolerance = automatic_tolerance(scene.model, settings);
-  print_json(reference_json(scene, settings, options));
+  settings.penalty = parse_automatic("--penalty", options.penalty);
+  print_json(reference_json(scene, chosen(scene.model, settings), options));
   return 0;
 }
 

@@ -57,6 +57,7 @@ RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
     }
     summary = run(scene, variant, settings, observer, [&](double t) { progress.at(t); });
   }
+  if (summary.status == RunStatus::unsupported) return summary;  // files that are there stay
   if (trajectory) trajectory->commit();
   if (output) output->commit();
   return summary;
@@ -155,7 +156,7 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option(
       "--judge-every", options->judge_every,
-      "judge the state after every K-th step and the last, K >= 1 (default: 64, or 256 "
+      "judge the state after every K-th step and the last, K >= 1 (default: 64 to 128, or 256 "
       "of the four-bar, fewer in short runs)");
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");

@@ -102,8 +102,8 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
   if (summary.steps == 0) return text + "  steps                  none was done\n";
   const double passes = json["passes_per_step"], factorizations = json["factorizations_per_step"];
   text += fmt::format(
-      "  steps                  {}, {:.3f} passes{} each, {} at the pass limit\n",
-      json["steps"].get<long>(), passes,
+      "  steps                  {} to {:g} s, {:.3f} passes{} each, {} at the pass limit\n",
+      json["steps"].get<long>(), json["steps"].get<double>() * json["step"].get<double>(), passes,
       factorizations == passes ? "" : fmt::format(" and {:.3f} factorizations", factorizations),
       json["steps_at_limit"].get<long>());
   text +=
@@ -126,7 +126,7 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
                                "not judged: drivers alone set the motion"));
   }
   text += fmt::format("  constraint violation   {}\n",
-                      figure(summary.constraint_violation_max, " m^2"));
+                      figure(summary.constraint_violation_max, " m^2 (m of linear rows)"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
   text +=
       fmt::format("  judging                {:.2f} us a step\n", json["judge_us"].get<double>());

@@ -1,4 +1,6 @@
 // mbs sweep: one scene with many parameter sets, a typed outcome each; mbs merge-sweep: its parts.
+#include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "mbs/commands.hpp"
@@ -43,6 +45,7 @@ void add_sweep_command(CLI::App& app, int& status) {
           ->check(CLI::Range(1L, kMostLanes));
   command->add_option("--seed", options->sampling.seed, "of the random numbers of --sample")
       ->capture_default_str()
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
       ->needs(sample);
   command
       ->add_flag("--sobol", options->sampling.sobol,

@@ -18,7 +18,7 @@ std::vector<std::string> columns_of(const SweepGrid& grid) {
   for (const SweepAxis& axis : grid.axes()) columns.push_back(axis.path);
   columns.insert(columns.end(), {"status", "status_reason", "failed_at", "steps", "passes_per_step",
                                  "position_error_estimate", "local_error_sum", "energy_drift_max",
-                                 "constraint_violation_max"});
+                                 "imbalance_max", "constraint_violation_max"});
   const OutputValues outputs(grid.base());
   for (const std::string& name : outputs.columns()) {
     for (const char* what : {".last", ".min", ".max"}) columns.push_back(name + what);
@@ -37,8 +37,9 @@ SweepRows::SweepRows(const SweepGrid& grid)
   for (std::size_t i = grid.axes().size(); i < columns_.size(); ++i) {
     for (const SweepAxis& axis : grid.axes()) {
       if (axis.path != columns_[i]) continue;
-      throw UsageError(fmt::format("--vary {}: found the name of a column of the table, allowed is {}",
-                                   in_quotes(axis.path), in_quotes("parameters/" + axis.path)));
+      throw UsageError(
+          fmt::format("--vary {}: found the name of a column of the table, allowed is {}",
+                      in_quotes(axis.path), in_quotes("parameters/" + axis.path)));
     }
   }
 }
@@ -70,6 +71,7 @@ std::string SweepRows::row(const std::vector<double>& values, const Lane& lane) 
   row.push_back(cell(summary.position_error_estimate));
   row.push_back(cell(summary.local_error_sum));
   row.push_back(stepped ? cell(summary.energy_drift_max) : "");
+  row.push_back(stepped ? cell(summary.imbalance_max) : "");
   row.push_back(stepped ? cell(summary.constraint_violation_max) : "");
   for (std::size_t i = 0; i < outputs_; ++i) {
     if (lane.outputs.empty()) {

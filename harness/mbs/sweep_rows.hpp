@@ -10,8 +10,8 @@
 namespace mbs {
 
 /// Columns: the paths that are varied; status, status_reason, failed_at, steps, passes_per_step,
-/// position_error_estimate, local_error_sum, energy_drift_max, constraint_violation_max as in the
-/// summary of `mbs simulate`; then NAME.last, NAME.min and NAME.max of each column of the scene's
+/// position_error_estimate, local_error_sum, energy_drift_max, imbalance_max,
+/// constraint_violation_max as in the summary of `mbs simulate`; then NAME.last, NAME.min and NAME.max of each column of the scene's
 /// outputs. A cell is empty where there is no such number.
 class SweepRows {
  public:

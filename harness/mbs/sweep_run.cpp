@@ -1,14 +1,18 @@
 // Checks all blocks, runs those that the journal lacks, then writes the table.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <vector>
 
 #include "atomic_file.hpp"
+#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
@@ -40,7 +44,8 @@ Shard parse_shard(const std::string& text) {
     ok = second.ec == std::errc{} && second.ptr == end;
   }
   if (!ok || shard.index < 1 || shard.index > shard.count || shard.count > kMostLanes) {
-    throw UsageError(fmt::format("--shard: found {}, allowed is i/K with i from 1 to K", in_quotes(text)));
+    throw UsageError(
+        fmt::format("--shard: found {}, allowed is i/K with i from 1 to K", in_quotes(text)));
   }
   --shard.index;
   return shard;
@@ -53,8 +58,9 @@ void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& b
     blocks.check(block);
     return std::string();
   };
-  for_blocks(jobs, mine, check, [](long, const std::string&) {},
-             [&](std::size_t done) { progress.at(static_cast<double>(done)); });
+  for_blocks(
+      jobs, mine, check, [](long, const std::string&) {},
+      [&](std::size_t done) { progress.at(static_cast<double>(done)); });
 }
 
 /// Whether rows can be kept beside it until it is written, so that a sweep can go on.
@@ -69,9 +75,17 @@ bool is_file(const std::string& path) {
 void require_no_other(const std::string& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
-  throw UsageError(fmt::format("{}: found a sweep that was ended, allowed is to go on with --resume, or to "
-                               "remove it",
-                               printable(path, kLongestPath)));
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_busy = file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (file >= 0) ::close(file);
+  if (is_busy) {
+    throw UsageError(
+        fmt::format("{}: another mbs sweep is writing it", printable(path, kLongestPath)));
+  }
+  throw UsageError(
+      fmt::format("{}: found a sweep that was ended, allowed is to go on with --resume, or to "
+                  "remove it",
+                  printable(path, kLongestPath)));
 }
 
 /// To go on with: what was done if it is of this sweep, or a new one.
@@ -89,8 +103,8 @@ Journal open_journal(const std::string& output, const nlohmann::json& head) {
   return journal;
 }
 
-nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid, const std::string& variant,
-                       const SweepBlocks& blocks, const Shard& shard) {
+nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid,
+                       const std::string& variant, const SweepBlocks& blocks, const Shard& shard) {
   const EnvironmentRecord record = environment_record();
   const auto recorded = [&record](const char* name) {
     return std::ranges::find(record, name, &EnvironmentRecord::value_type::first)->second;
@@ -109,15 +123,19 @@ nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid, const
           {"shard", {shard.index + 1, shard.count}}};
 }
 
-void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& blocks, Journal& journal) {
+void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& blocks,
+                Journal& journal) {
   std::vector<long> open;
   for (const long block : mine) {
     if (!journal.has(block)) open.push_back(block);
   }
   Progress progress(static_cast<double>(mine.size()), "blocks of lanes");
-  for_blocks(jobs, open, [&](long block) { return blocks.run(block); },
-             [&](long block, const std::string& rows) { journal.add(block, rows); },
-             [&, before = journal.size()](std::size_t done) { progress.at(static_cast<double>(before + done)); });
+  for_blocks(
+      jobs, open, [&](long block) { return blocks.run(block); },
+      [&](long block, const std::string& rows) { journal.add(block, rows); },
+      [&, before = journal.size()](std::size_t done) {
+        progress.at(static_cast<double>(before + done));
+      });
   journal.scan();
 }
 
@@ -128,18 +146,21 @@ int sweep(const SweepOptions& options) {
   require_not_scene("--output", options.output, options.scene);
   const Shard shard = parse_shard(options.shard);
   const SweepGrid grid(options.scene, options.vary, options.sampling);
-  resolve(options, grid.base());  // what is wrong with the options is not said of a lane
+  // What is wrong with the options is not said of a lane.
+  const StepSettings settings = resolve(options, grid.base()).step;
   const SweepBlocks blocks(options, grid, *variant.variant);
   const nlohmann::json head = head_of(options, grid, variant.name, blocks, shard);
   const bool is_part = !options.shard.empty();
   if (is_part && !is_file(options.output)) {
-    throw UsageError("--output: found a device or a pipe, allowed with --shard is a file, for mbs merge-sweep");
+    throw UsageError(
+        "--output: found a device or a pipe, allowed with --shard is a file, for mbs merge-sweep");
   }
   std::error_code ignored;
   if (is_part && fs::exists(options.output, ignored)) {
     if (!options.resume) {
-      throw UsageError(fmt::format("{}: found a file, allowed with --shard is a new one, or --resume",
-                                   printable(options.output, kLongestPath)));
+      throw UsageError(
+          fmt::format("{}: found a file, allowed with --shard is a new one, or --resume",
+                      printable(options.output, kLongestPath)));
     }
     const Journal done(options.output);
     require_same_sweep(done, head);
@@ -148,8 +169,21 @@ int sweep(const SweepOptions& options) {
   static_cast<void>(AtomicFile(options.output));  // says at once what cannot be written
   const std::string kept = options.output + ".journal";
   if (!options.resume) require_no_other(kept);
+  if (options.resume && !is_part && is_file(options.output) &&
+      fs::exists(options.output, ignored) && !fs::exists(kept, ignored)) {
+    throw UsageError(
+        fmt::format("{}: found a table and no sweep that was ended, allowed is the same without "
+                    "--resume, which makes it anew",
+                    printable(options.output, kLongestPath)));
+  }
+  for (const std::string& warning :
+       setting_warnings(grid.base().model, settings,
+                        options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
+    fmt::print(stderr, "mbs: warning: {}: {}\n", grid.base().name, warning);
+  }
   std::vector<long> mine;
-  for (long block = shard.index; block < blocks.count(); block += shard.count) mine.push_back(block);
+  for (long block = shard.index; block < blocks.count(); block += shard.count)
+    mine.push_back(block);
   const bool is_begun = fs::exists(kept, ignored) && fs::file_size(kept, ignored) > 0;
   if (!is_begun) require_lanes(options.jobs, mine, blocks);  // else it was done
   Journal journal = open_journal(options.output, head);

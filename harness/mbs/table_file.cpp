@@ -21,7 +21,7 @@ TableFile::TableFile(const std::string& path) : path_(path), file_(path) {
 
 void TableFile::write(const std::string& text) {
   if (!compressed_) {
-    file_.stream() << text;
+    if (!(file_.stream() << text)) fail();
   } else if (!text.empty() &&
              ::gzwrite(static_cast<gzFile>(compressed_.get()), text.data(),
                        static_cast<unsigned>(text.size())) != static_cast<int>(text.size())) {

@@ -192,7 +192,7 @@ py::tuple run(mbs::Stepper& self, const py::object& of_steps, const py::object& 
   return py::make_tuple(table[py::slice(0, written, 1)], at_limit);
 }
 
-/// (lanes, rows, 1 + outputs), not a number from where a lane's factorization fails.
+/// (lanes, rows, 1 + outputs); outputs are not a number from where a lane's factorization fails.
 py::array run_lanes(mbs::BatchStepper& self, const py::object& of_steps,
                     const py::object& of_every) {
   const auto [steps, every] = counts(of_steps, of_every);
@@ -208,7 +208,8 @@ py::array run_lanes(mbs::BatchStepper& self, const py::object& of_steps,
         double* place = first + (lane * rows + i / every - 1) * columns;
         if (outcomes[static_cast<std::size_t>(lane)].status ==
             mbs::StepStatus::factorization_failed) {
-          std::fill_n(place, columns, std::numeric_limits<double>::quiet_NaN());
+          *place++ = self.t();
+          std::fill_n(place, columns - 1, std::numeric_limits<double>::quiet_NaN());
           continue;
         }
         *place++ = self.state(lane).t;
@@ -386,6 +387,9 @@ PYBIND11_MODULE(_mbs, module) {
       .def_property_readonly(
           "dt", [](const Stepper& self) { return self.settings().step; }, "The step, s.")
       .def_property_readonly(
+          "scheme", [](const Stepper& self) { return self.settings().scheme; },
+          "The scheme, given or chosen with the implementation: who names that needs it too.")
+      .def_property_readonly(
           "penalty", [](const Stepper& self) { return self.settings().penalty; },
           "The penalty factor, given or chosen.")
       .def_property_readonly(
@@ -401,7 +405,8 @@ PYBIND11_MODULE(_mbs, module) {
           py::arg("input"), py::arg("value"), py::arg("rate") = 0.0, py::arg("acceleration") = 0.0,
           "What the input of this name is from the end of the next step on. What moves a point or "
           "a\n"
-          "constraint needs its rate (per s) and acceleration (per s^2) too.")
+          "constraint (m, rad) needs its rate (per s) and acceleration (per s^2) too, anew for each "
+          "step.")
       .def(
           "step",
           [](Stepper& self, const py::object& steps) {
@@ -416,8 +421,10 @@ PYBIND11_MODULE(_mbs, module) {
       .def("run", run, py::arg("steps"), py::arg("every") = 1, py::arg("inputs") = py::none(),
            "(rows, how many steps ended at the pass limit). A row is t and `values` after each\n"
            "`every`-th step: after steps 3, 6 and 9 of 10 for every=3. Fewer rows where a step "
-           "fails.\n"
-           "`inputs`: (steps, inputs) values, or (steps, inputs, 3) with rates and accelerations.")
+           "fails,\n"
+           "unless that is after the last row.\n"
+           "`inputs`: (steps, inputs) values, whose rates are 0, or (steps, inputs, 3) with rates and "
+           "accelerations.")
       .def_property_readonly(
           "t", [](Stepper& self) { return self.state().t; }, "Now, s.")
       .def_property_readonly("q", state_view(&mbs::State::q), "Coordinates, m; a view.")
@@ -477,7 +484,6 @@ PYBIND11_MODULE(_mbs, module) {
           py::arg("lane"), py::arg("input"), py::arg("value"), py::arg("rate") = 0.0,
           py::arg("acceleration") = 0.0, "As Stepper.set(), for a lane, from 0 on.")
       .def("run", run_lanes, py::arg("steps"), py::arg("every") = 1,
-           "(lanes, rows, 1 + outputs): t and the outputs after each `every`-th step, not a number "
-           "from\n"
-           "where a lane fails.");
+           "(lanes, rows, 1 + outputs): t and the outputs after each `every`-th step. Outputs are not a\n"
+           "number from where a lane fails.");
 }

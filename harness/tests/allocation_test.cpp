@@ -103,8 +103,7 @@ constexpr int kStretchSteps = 120;
 /// The stretch passes a singular position of the four-bar in its middle, where passes, multipliers
 /// and pivots change most.
 Prepared prepare(Scene scene) {
-  StepSettings settings;
-  settings.penalty = automatic_penalty(scene.model, settings);
+  const StepSettings settings = chosen(scene.model);
   Stretch stretch = make_stretch(scene, settings.step, kStretchSteps);
   return {std::move(scene), settings, std::move(stretch)};
 }

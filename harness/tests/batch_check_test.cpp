@@ -19,17 +19,10 @@ Variant batch_named(const std::string& name) {
   return *std::ranges::find(variants, name, &Variant::name);
 }
 
-StepSettings settings_for(const Scene& scene) {
-  StepSettings settings;
-  settings.penalty = automatic_penalty(scene.model, settings);
-  settings.tolerance = automatic_tolerance(scene.model, settings);
-  return settings;
-}
-
 Verdict check_batch(const std::string& name, const std::string& scene_name) {
   const Variant variant = batch_named(name);
   const Scene scene = load_scene(scene_name);
-  const StepSettings settings = settings_for(scene);
+  const StepSettings settings = chosen(scene.model);
   return check_implementation(scene, {"batch/" + name, nullptr, &variant}, settings,
                               run_reference(scene, settings), {.seconds = 400.0});
 }
@@ -84,7 +77,7 @@ TEST(BatchChecks, ABatchThatIsRefusedIsNotChecked) {
 
 TEST(BatchChecks, NoTimeIsNoDisagreement) {
   const Scene scene = load_scene("four-bar:2");
-  const StepSettings settings = settings_for(scene);
+  const StepSettings settings = chosen(scene.model);
   const auto checks = batch_checks(batch_named("sound"), scene.model, settings,
                                    run_reference(scene, settings, 16), 0.0);
   ASSERT_EQ(checks.size(), 2U);

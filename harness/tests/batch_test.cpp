@@ -16,12 +16,6 @@
 namespace mbs {
 namespace {
 
-StepSettings settings_for(const Model& model) {
-  StepSettings settings;
-  settings.penalty = automatic_penalty(model, settings);
-  return settings;
-}
-
 /// `model` with other masses, forces and velocities.
 Model heavier(const Model& model, double factor) {
   ModelData data = model.data();
@@ -37,7 +31,7 @@ class Batch : public ::testing::Test {
     std::vector<StepSettings> settings;
     for (const Model& model : models_) {
       models.push_back(&model);
-      settings.push_back(settings_for(model));
+      settings.push_back(chosen(model));
     }
     return test::batches()[0].create_batch(models, settings);
   }
@@ -57,7 +51,7 @@ TEST_F(Batch, LanesMoveAsSimulationsDo) {
   for (int i = 0; i < 50; ++i) batch->step(outcomes);
   for (int lane = 0; lane < 3; ++lane) {
     const Model& model = models_[static_cast<std::size_t>(lane)];
-    const auto alone = test::batches()[0].create(model, settings_for(model));
+    const auto alone = test::batches()[0].create(model, chosen(model));
     alone->set_state(start(lane));
     for (int i = 0; i < 50; ++i) static_cast<void>(alone->step());
     State expected, actual;
@@ -161,9 +155,7 @@ TEST(BatchShape, IsEverythingButValues) {
 }
 
 TEST(BatchShape, MethodsDifferInAllButPenaltyAndTolerance) {
-  StepSettings other;
-  other.penalty *= 2;
-  other.tolerance *= 2;
+  StepSettings other{.penalty = 1e8, .tolerance = 1e-9};
   EXPECT_TRUE(have_same_method(StepSettings{}, other));
   other.projections_every = 2;
   EXPECT_FALSE(have_same_method(StepSettings{}, other));

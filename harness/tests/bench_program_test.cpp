@@ -316,6 +316,7 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --benchmark_out=", "--benchmark_out= names no file");
   expect_refusal("four-bar:1 --benchmark_out=-", "cannot write '-'");
   expect_refusal("four-bar:1 --slower-than 0.9", "--slower-than");
+  expect_refusal("four-bar:1 --operations --tangent kept", "--tangent is one of steps");
   expect_refusal("four-bar:1 --slower-than nan", "--slower-than");
   expect_refusal("four-bar:1 --patience 0", "--patience");
   expect_refusal("four-bar:1 --patience -1", "--patience");

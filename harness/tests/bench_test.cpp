@@ -12,6 +12,7 @@
 #include "bench/null_variant.hpp"
 #include "bench/reporters.hpp"
 #include "exact/four_bar_exact.hpp"
+#include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/scripted_simulation.hpp"
 #include "usage_error.hpp"
@@ -164,7 +165,7 @@ TEST_F(MeasurementTest, RefusesAMotionThatIsLost) {
 
 BenchRequest request() {
   BenchRequest result;
-  result.settings = [](const Model&) { return StepSettings{}; };
+  result.settings = [](const Model& model) { return chosen(model); };
   return result;
 }
 

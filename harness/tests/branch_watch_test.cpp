@@ -252,9 +252,7 @@ TEST(ClosedParts, TellWhereFreedomsPassEnergyOn) {
 TEST(BranchWatch, FindsJumpsOfLoopsThatAreCarriedOrHaveSomethingHanging) {
   for (const Scene& scene : {crank_rocker(), carried_crank_rocker()}) {
     RunSettings settings;
-    settings.step.scheme = Scheme::saddle_point;
-    settings.step.step = 1e-2;
-    settings.step.penalty = automatic_penalty(scene.model, settings.step);
+    settings.step = chosen(scene.model, {.step = 1e-2, .scheme = Scheme::saddle_point});
     settings.duration = 3.2;
     const RunSummary summary = run(scene, test::reference(), settings);
     EXPECT_EQ(summary.status, RunStatus::wrong_branch) << summary.reason;

@@ -129,8 +129,7 @@ TEST(CheckProgram, RunsNoReferenceWhereNobodyServesTheScene) {
 
 TEST(CheckProgram, TooFewStepsToJudgeAreNoDisagreement) {
   const Scene scene = load_scene("four-bar:1");
-  StepSettings settings;
-  settings.penalty = automatic_penalty(scene.model, settings);
+  const StepSettings settings = chosen(scene.model);
   const NamedVariant variant = select_variants({"minimal_dense"}).at(0);
   const Verdict verdict = check_in_process(scene, variant, settings, run_reference(scene, settings), -1.0);
   EXPECT_EQ(verdict.verdict, "timeout");
@@ -181,6 +180,7 @@ TEST(CheckProgram, RefusesBadInput) {
     expect_check_refusal(std::string("four-bar:1 --steps ") + value, "16 to 800");
   }
   expect_check_refusal("four-bar:1 --json /no/such/folder/x.json", "/no/such/folder/x.json");
+  expect_check_refusal("--json four-bar:1", "the name of a scene");
 }
 
 TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {

@@ -145,8 +145,7 @@ TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
   const auto drowns = [&](double penalty, Scheme scheme) {
     RunSettings settings;
     settings.duration = 0.1;
-    settings.step.penalty = penalty;
-    settings.step.scheme = scheme;
+    settings.step = {.penalty = penalty, .tolerance = 1e-9, .scheme = scheme};
     return run(scene, test::reference(), settings).reason.find("% of the constraint forces") !=
            std::string::npos;
   };

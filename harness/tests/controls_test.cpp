@@ -69,12 +69,7 @@ const Expectation kExpectations[] = {
 /// The scene and what the reference says of it, computed once.
 struct Bench {
   Scene scene = load_scene("four-bar:10");
-  StepSettings settings = [this] {
-    StepSettings result;
-    result.penalty = automatic_penalty(scene.model, result);
-    result.tolerance = automatic_tolerance(scene.model, result);
-    return result;
-  }();
+  StepSettings settings = chosen(scene.model);
   ReferenceRun reference = run_reference(scene, settings);
 };
 

@@ -26,7 +26,7 @@ TEST(DenseVariants, RefuseMatricesOfMoreThanTwoGibibytes) {
   for (const NamedVariant& one : all_variants()) {
     if (!one.variant->dense || one.entry->implementation.role == Role::example) continue;
     for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
-      StepSettings settings;
+      StepSettings settings{.penalty = 1e8, .tolerance = 1e-9};
       settings.scheme = scheme;
       EXPECT_THROW((void)create_simulation(*one.variant, model, settings), Unsupported) << one.name;
     }

@@ -110,8 +110,7 @@ TEST(Describe, FourBar) {
 double counted_passes(const Scene& scene, Scheme scheme) {
   StepSettings settings = kSettings;
   settings.scheme = scheme;
-  settings.penalty = automatic_penalty(scene.model, settings);
-  settings.tolerance = automatic_tolerance(scene.model, settings);
+  settings = chosen(scene.model, settings);
   const Stretch stretch =
       make_stretch(scene, settings.step, most_steps(scene.model.variables()), std::nullopt, scheme);
   ReferenceSimulation simulation(scene.model, settings);

@@ -70,9 +70,7 @@ double swinging(double lean, double moment, double inertia) {
 
 RunSummary simulate(const Scene& scene, double duration, const Observer& observer = {}) {
   RunSettings settings;
-  settings.step.step = 2e-3;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step);
-  settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
+  settings.step = chosen(scene.model, {.step = 2e-3});
   settings.duration = duration;
   return run(scene, test::reference(), settings, observer);
 }

@@ -64,8 +64,7 @@ TEST(LocalErrors, DegradeARunThatEnergyAndConstraintsCallSound) {
   RunSettings settings;
   settings.duration = 5.0;
   const auto with_step = [&](double step) {
-    settings.step.step = step;
-    settings.step.penalty = automatic_penalty(scene.model, settings.step);
+    settings.step = chosen(scene.model, {.step = step});
     return run(scene, test::reference(), settings);
   };
   const RunSummary coarse = with_step(1.25e-3);
@@ -86,7 +85,7 @@ TEST(HalfStep, IsInfiniteWhereTheHalfStepIsLost) {
 TEST(Deadline, CountsTheStepsBeyondIt) {
   const Scene scene = load_scene("four-bar:1");
   RunSettings settings;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.step = chosen(scene.model);
   settings.duration = 0.25;
   EXPECT_FALSE(run(scene, test::reference(), settings).step_us.deadline_misses);
   settings.deadline_us = 1e-6;
@@ -101,7 +100,7 @@ TEST(Deadline, CountsTheStepsBeyondIt) {
 TEST(Repeats, TellEachStepsLeastTime) {
   const Scene scene = load_scene("four-bar:1");
   RunSettings settings;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.step = chosen(scene.model);
   settings.duration = 0.25;
   settings.deadline_us = 1e-6;
   EXPECT_FALSE(run(scene, test::reference(), settings).least_us);

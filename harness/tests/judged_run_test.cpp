@@ -143,7 +143,7 @@ TEST(JudgedRun, GoesOnFromWhereItIsAfterAFalseAlarm) {
 TEST(JudgedRun, JudgesOneStepIn64To128OrThirtyTwoTimes) {
   const Scene scene = test::free_fall(), exact = load_scene("four-bar:1");
   RunSettings settings;
-  settings.step.step = 1e-3;
+  settings.step = {.step = 1e-3, .penalty = 1e8, .tolerance = 1e-9};
   const auto interval = [&](double duration) {
     settings.duration = duration;
     return judge_interval(scene, settings);

@@ -69,8 +69,7 @@ struct Case {
 };
 Case four_bar_case(int loops) {
   Scene scene = load_scene("four-bar:" + std::to_string(loops));
-  StepSettings settings;
-  settings.penalty = automatic_penalty(scene.model, settings);
+  const StepSettings settings = chosen(scene.model);
   Stretch stretch = make_stretch(scene, settings.step, 10, 0.0);
   return {std::move(scene), settings, std::move(stretch)};
 }

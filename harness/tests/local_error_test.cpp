@@ -351,7 +351,7 @@ Scene spring_of_period(double period) {
 TEST(LocalErrors, AMotionInStepWithTheJudgeIsSeen) {
   const Scene scene = spring_of_period(32);
   RunSettings settings;
-  settings.step.step = 1e-3;
+  settings.step = chosen(scene.model, {.step = 1e-3});
   settings.duration = 0.096;
   settings.judge_every = 32;
   EXPECT_EQ(run(scene, test::reference(), settings).status, RunStatus::degraded);

@@ -30,9 +30,7 @@ TEST(PowerBalance, HoldsInSoundRuns) {
   for (const auto& [name, step, duration] : cases) {
     const Scene scene = shipped(name);
     RunSettings settings;
-    settings.step.scheme = Scheme::saddle_point;
-    settings.step.step = step;
-    settings.step.penalty = automatic_penalty(scene.model, settings.step);
+    settings.step = chosen(scene.model, {.step = step, .scheme = Scheme::saddle_point});
     settings.duration = duration;
     const RunSummary summary = run(scene, test::reference(), settings);
     ASSERT_TRUE(summary.imbalance_max) << name << summary.reason;
@@ -74,7 +72,7 @@ TEST(PowerBalance, IsNoQuestionWhereEnergyIsConservedOrDriversSetAll) {
   for (const char* name : {"double_pendulum.json", "examples/driven_crank.json"}) {
     const Scene scene = shipped(name);
     RunSettings settings;
-    settings.step.penalty = automatic_penalty(scene.model, settings.step);
+    settings.step = chosen(scene.model);
     settings.duration = 0.1;
     EXPECT_FALSE(run(scene, test::reference(), settings).imbalance_max) << name;
   }
@@ -94,9 +92,7 @@ TEST(EvenCarriage, ConservesEnergyInItsFrame) {
   const Scene uneven = pendulum("4.2", R"("driven": {"x": {"polynomial": [0, 5, 0.1]}, "y": 0})");
   const Scene still = pendulum("-0.8", R"("fixed": true)");
   RunSettings settings;
-  settings.step.scheme = Scheme::saddle_point;
-  settings.step.step = 1e-2;
-  settings.step.penalty = automatic_penalty(still.model, settings.step);
+  settings.step = chosen(still.model, {.step = 1e-2, .scheme = Scheme::saddle_point});
   settings.duration = 1.0;
   const auto drift = [&](const Scene& scene) {
     return run(scene, test::reference(), settings).energy_drift_max;
@@ -142,9 +138,7 @@ TEST(EvenCarriage, TakesBodiesAlongWhosePointsAreDriven) {
   EXPECT_FALSE(EvenCarriage::of(body("0, 5", "3, 4.8").model));
   EXPECT_FALSE(EvenCarriage::of(body("0, 5, 1", "3, 5, 1").model));
   RunSettings settings;
-  settings.step.scheme = Scheme::saddle_point;
-  settings.step.step = 1e-3;
-  settings.step.penalty = automatic_penalty(even.model, settings.step);
+  settings.step = chosen(even.model, {.step = 1e-3, .scheme = Scheme::saddle_point});
   settings.duration = 1.0;
   const RunSummary sound = run(even, test::reference(), settings);
   ASSERT_TRUE(sound.energy_drift_max) << sound.reason;

@@ -47,6 +47,13 @@ TEST(ReferenceProgram, ServesEverySetting) {
   }
 }
 
+TEST(ReferenceProgram, RefusesToGoBeyondADriversEnd) {
+  const auto run = test::run_mbs("reference '" MBS_ROOT
+                                 "/harness/scenes/examples/quarter_car.json' --step 0.01 --after 2000");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.errors.find("a driver's table ends at 5 s"), std::string::npos) << run.errors;
+}
+
 TEST(ReferenceProgram, KnowsNoOtherImplementation) {
   const auto run =
       test::run_program(MBS_REFERENCE, "simulate four-bar:1 --implementation csc_klu/refactor");

@@ -238,8 +238,7 @@ TEST(ReferenceSimulation, LegsOnOneBodyMoveAlikeInBothForms) {
 TEST(ReferenceSimulation, FreeFallIsExact) {
   const Scene scene = test::free_fall();
   const State start = initial_state(scene.model);
-  StepSettings settings;
-  settings.step = 0.25;
+  const StepSettings settings{.step = 0.25, .penalty = 1.0, .tolerance = 1e-9};
   ReferenceSimulation simulation(scene.model, settings);
   simulation.set_state(start);
   State state;
@@ -260,9 +259,7 @@ TEST(ReferenceSimulation, FreeFallIsExact) {
 
 TEST(ReferenceSimulation, StopsAtThePassLimit) {
   const Scene scene = load_scene("four-bar:2");
-  StepSettings settings;
-  settings.tolerance = 1e-30;
-  settings.max_passes = 3;
+  const StepSettings settings{.penalty = 1e8, .tolerance = 1e-30, .max_passes = 3};
   ReferenceSimulation simulation(scene.model, settings);
   simulation.set_state(initial_state(scene.model));
   const StepOutcome outcome = simulation.step();
@@ -277,8 +274,7 @@ TEST(ReferenceSimulation, TangentConditionIsThatOfTheTangent) {
   }
   for (const Scene& scene : scenes) {
     for (const double penalty : {1.0, 1e8, 1e10}) {
-      StepSettings settings;
-      settings.penalty = penalty;
+      const StepSettings settings{.penalty = penalty, .tolerance = 1e-9};
       ReferenceSimulation simulation(scene.model, settings);
       State state = initial_state(scene.model);
       simulation.set_state(state);

@@ -108,9 +108,8 @@ TEST(ScaledEquations, AreStepsOfTheJudgeToo) {
   };
   RunSettings settings;
   settings.duration = 0.1;
-  settings.step.scheme = Scheme::rattle4;
   settings.scale_equations = true;
-  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  settings.step = chosen(ScaledEquations(scene.model).model(), {.scheme = Scheme::rattle4});
   settings.half_step = settings.step;
   settings.half_step->step /= 2;
   EXPECT_EQ(run(scene, variant, settings).status, RunStatus::ok);
@@ -122,7 +121,7 @@ TEST(ScaledEquations, AreASettingOfARun) {
   RunSettings settings;
   settings.duration = 1.0;
   settings.scale_equations = true;
-  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  settings.step = chosen(ScaledEquations(scene.model).model());
   const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
   EXPECT_LT(*summary.position_error_max, 1e-4);

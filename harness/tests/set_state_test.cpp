@@ -23,9 +23,7 @@ TEST_P(SetState, IsTheWayBackFromAStepThatWasNotFinite) {
   const Scene scene = load_scene("four-bar:5");
   for (const Scheme scheme :
        {Scheme::penalty, Scheme::saddle_point, Scheme::rattle, Scheme::multistep6}) {
-    StepSettings settings;
-    settings.scheme = scheme;
-    settings.penalty = automatic_penalty(scene.model, settings);
+    const StepSettings settings = chosen(scene.model, {.scheme = scheme});
     const State start = make_stretch(scene, settings.step, 10).initial;
     std::unique_ptr<Simulation> simulation;
     try {

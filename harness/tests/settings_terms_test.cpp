@@ -55,8 +55,8 @@ TEST(MixedPrecision, StaysAtRest) {
     if (!variant.variant->serves.mixed_precision) continue;
     SCOPED_TRACE(variant.name);
     for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
-      StepSettings settings{.scheme = scheme, .precision = Precision::mixed};
-      settings.penalty = automatic_penalty(model, settings);
+      const StepSettings settings =
+          chosen(model, {.scheme = scheme, .precision = Precision::mixed});
       const auto simulation = create_simulation(*variant.variant, model, settings);
       State state = initial_state(model);
       simulation->set_state(state);

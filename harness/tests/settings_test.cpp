@@ -205,36 +205,44 @@ TEST(AutomaticTolerance, WithoutConstraints) {
                    1e-9);
 }
 
-TEST(ParsePenalty, TakesNumbersAndAuto) {
-  const Model model(four_bar(2));
-  EXPECT_EQ(parse_penalty("1e8", model, {.step = kStep}), 1e8);
-  EXPECT_EQ(parse_penalty("0.5", model, {.step = kStep}), 0.5);
-  EXPECT_EQ(parse_penalty("123456", model, {.step = kStep}), 123456.0);
-  EXPECT_EQ(parse_penalty("auto", model, {.step = kStep}),
-            automatic_penalty(model, {.step = kStep}));
+TEST(ParseAutomatic, TakesNumbersAndAuto) {
+  EXPECT_EQ(parse_automatic("--penalty", "1e8"), 1e8);
+  EXPECT_EQ(parse_automatic("--penalty", "0.5"), 0.5);
+  EXPECT_EQ(parse_automatic("--penalty", "123456"), 123456.0);
+  EXPECT_EQ(parse_automatic("--penalty", "auto"), 0.0);
 }
 
-TEST(ParsePenalty, RefusesAnAutomaticOneThatIsNoNumber) {
-  ModelData data;  // a rod of 1e-130 m with 1e50 kg at its end
-  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1e-130, 0, 0}}};
-  data.mass = {{0, 0, 1e50}, {1, 1, 1e50}};
-  data.force = data.initial_velocity = {0.0, 0.0};
-  data.dot_constraints.push_back({1, 0, 1, 0, 1e-260, "rod"});
-  EXPECT_THROW(parse_penalty("auto", Model(std::move(data)), {.step = kStep}), UsageError);
-}
-
-TEST(ParsePenalty, RefusesEverythingElse) {
-  const Model model(four_bar(2));
+TEST(ParseAutomatic, RefusesEverythingElse) {
   for (const char* text :
        {"",     " ",     "auto ",  "Auto", "0",    "-0",   "-1",  "nan",  "-nan", "inf",
         "-inf", "1e400", "1e-400", "1e8x", " 1e8", "1e8 ", "1,5", "0x10", "--",   "e8"}) {
     try {
-      parse_penalty(text, model, {.step = kStep});
+      parse_automatic("--penalty", text);
       ADD_FAILURE() << '"' << text << "\" was taken";
     } catch (const UsageError& error) {
       expect_parts(error.what(), {"--penalty", std::string("'") + text + "'", "'auto'", "above 0"});
     }
   }
+}
+
+TEST(Chosen, IsWhatIsZero) {
+  const Model model(four_bar(2));
+  const StepSettings both = chosen(model, {.step = kStep});
+  EXPECT_EQ(both.penalty, automatic_penalty(model, {.step = kStep}));
+  EXPECT_EQ(both.tolerance, automatic_tolerance(model, both));
+  const StepSettings one = chosen(model, {.step = kStep, .penalty = 3e7});
+  EXPECT_EQ(one.penalty, 3e7);
+  EXPECT_EQ(one.tolerance, automatic_tolerance(model, {.step = kStep, .penalty = 3e7}));
+  EXPECT_EQ(chosen(model, {.step = kStep, .tolerance = 1e-5}).tolerance, 1e-5);
+}
+
+TEST(Chosen, RefusesAPenaltyFactorThatIsNoNumber) {
+  ModelData data;  // a rod of 1e-130 m with 1e50 kg at its end
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1e-130, 0, 0}}};
+  data.mass = {{0, 0, 1e50}, {1, 1, 1e50}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.dot_constraints.push_back({1, 0, 1, 0, 1e-260, "rod"});
+  EXPECT_THROW(chosen(Model(std::move(data)), {.step = kStep}), UsageError);
 }
 
 }  // namespace

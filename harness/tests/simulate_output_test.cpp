@@ -98,6 +98,16 @@ TEST_F(SimulateOutput, WritesBothTables) {
   }
 }
 
+TEST_F(SimulateOutput, AFileStaysWhereNothingIsSimulated) {
+  ASSERT_EQ(simulate(scene() + " --duration 0.1" + to("--output", "out.csv")).status, 0);
+  const std::string before = test::file_text(folder_.file("out.csv"));
+  const auto run = test::run_mbs("simulate --implementation minimal_dense --scheme rattle " + scene() +
+                                 to("--output", "out.csv"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("unsupported"), std::string::npos) << run.output << run.errors;
+  EXPECT_EQ(test::file_text(folder_.file("out.csv")), before);
+}
+
 TEST_F(SimulateOutput, CompressesWhatEndsInGz) {
   for (const char* name : {"all.csv", "all.csv.gz"}) {
     ASSERT_EQ(simulate(scene() + " --duration 1" + to("--trajectory", name)).status, 0);

@@ -263,6 +263,7 @@ TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
 
   std::vector<std::vector<double>> expected;
   RunSettings settings;
+  settings.step = {.penalty = 1e8, .tolerance = 1e-9};
   settings.duration = 0.01;
   const Scene scene = load_scene("four-bar:1");
   run(scene, *all_variants().front().variant, settings,

@@ -213,8 +213,7 @@ TEST(Stepper, AllocatesNothingOnceItRuns) {
 }
 
 TEST(Stepper, TakesTheRulesChoiceAndItsNumbers) {
-  Stepper stepper(SceneDocument::load("vehicle:4"),
-                  {.settings = {.step = 1e-3, .penalty = 0.0, .tolerance = 0.0}});
+  Stepper stepper(SceneDocument::load("vehicle:4"), {.settings = {.step = 1e-3}});
   EXPECT_NE(stepper.implementation(), "");
   EXPECT_GT(stepper.settings().penalty, 1.0);
   EXPECT_GT(stepper.settings().tolerance, 0.0);
@@ -267,7 +266,7 @@ TEST(Stepper, RefusesSettingsByTheirOwnNames) {
   const auto said = [&] { return refused_by([&] { Stepper(scene, options); }); };
   options.settings.max_passes = 0;
   EXPECT_EQ(said().find("max_passes is 0"), 0u) << said();
-  options.settings = {.step = 1e-200, .penalty = 0.0};  // the penalty factor would be infinite
+  options.settings = {.step = 1e-200};  // the penalty factor would be infinite
   EXPECT_EQ(said().find("step is 1e-200 s: it must be"), 0u) << said();
   options.settings = {.projections_every = 0};
   EXPECT_EQ(said().find("projections_every is 0"), 0u) << said();
@@ -330,7 +329,7 @@ TEST(Stepper, RestoresOnlyWhatItCouldHaveSaved) {
     return SceneDocument::parse(pendulum("-2", std::to_string(-length)));
   };
   Stepper one(pendulum_of(1.0)), same(pendulum_of(1.0)), other(pendulum_of(5.0)),
-      finer(pendulum_of(1.0), {.settings = {.step = 1e-3, .penalty = 0.0, .tolerance = 0.0}});
+      finer(pendulum_of(1.0), {.settings = {.step = 1e-3}});
   one.save(saved);
   same.restore(saved);
   expect_parts(refused_by([&] { other.restore(saved); }), {"another scene or other settings"});
@@ -357,8 +356,8 @@ TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
 }
 
 TEST(SceneDocument, ANumberMayTakeThePlaceOfAnExpression) {
-  SceneDocument scene = SceneDocument::parse(pendulum(R"("mass": 3)", R"("mass": "=2*m")")
-                                                 .replace(0, 1, R"({"parameters": {"m": 1}, )"));
+  SceneDocument scene = SceneDocument::parse(
+      pendulum(R"("mass": 3)", R"("mass": "=2*m")").replace(0, 1, R"({"parameters": {"m": 1}, )"));
   EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");
   scene.set_number("rods/rod/mass", 4.0);  // nothing names m now
   EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");

@@ -121,6 +121,15 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(files(), 3U);
 }
 
+TEST_F(SweepParts, AFinishedTableIsNotMadeAgainByResume) {
+  sweep(kLanes, "t.csv");
+  const std::string before = text("t.csv");
+  const auto again = sweep(kLanes + "--resume", "t.csv");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.errors.find("without --resume"), std::string::npos) << again.errors;
+  EXPECT_EQ(text("t.csv"), before);
+}
+
 TEST_F(SweepParts, AFullDiskAtTheStartLeavesNothing) {
   const auto full = sweep(kLanes, "t.csv", "batch/lost_lane", "ulimit -f 1;");  // not even the head of the journal
   EXPECT_EQ(full.status, 2);

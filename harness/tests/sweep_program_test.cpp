@@ -80,7 +80,7 @@ TEST_F(SweepProgram, WritesARowALane) {
   const std::string text = test::file_text(file_);
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "gravity/1,rods/A0-B0/mass,status,status_reason,failed_at,steps,passes_per_step,"
-            "position_error_estimate,local_error_sum,energy_drift_max,constraint_violation_max,"
+            "position_error_estimate,local_error_sum,energy_drift_max,imbalance_max,constraint_violation_max,"
             "B0.x.last,B0.x.min,B0.x.max,B0.y.last,B0.y.min,B0.y.max,"
             "vB0.vx.last,vB0.vx.min,vB0.vx.max,vB0.vy.last,vB0.vy.min,vB0.vy.max");
   const std::vector<Row> rows = rows_of(file_);
@@ -205,6 +205,7 @@ TEST_F(SweepProgram, RefusesBadInputBeforeAnythingRuns) {
   expect_refusal(vary + "rods/A0-B0/mass=1,-1",
                  {"lane 2 of 2 (rods/A0-B0/mass = -1): ", "four-bar:2: rods[0].mass: found -1"});
   expect_refusal(vary + "gravity/1=1 --step 0", {"--step is 0"});
+  expect_refusal(vary + "gravity/1=uniform:1:2 --sample 2 --seed -1", {"--seed", "-1"});
   expect_refusal(vary + "gravity/1=1 --duration -1", {"mbs: --duration is -1"});
   expect_refusal("four-bar:2,fill=0.9 --vary gravity/1=1", {"fill"});
   expect_refusal("nowhere.json --vary gravity/1=1", {"nowhere.json"});

@@ -162,8 +162,7 @@ std::vector<Lane> six_lanes() {
   for (long i = 0; i < grid.lanes(); ++i) {
     Lane lane{grid.scene(i), {}};
     lane.settings.duration = 0.25;
-    lane.settings.step.penalty = automatic_penalty(lane.scene.model, lane.settings.step);
-    lane.settings.step.tolerance = automatic_tolerance(lane.scene.model, lane.settings.step);
+    lane.settings.step = chosen(lane.scene.model);
     lanes.push_back(std::move(lane));
   }
   return lanes;

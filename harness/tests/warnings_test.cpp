@@ -20,7 +20,7 @@ namespace {
 
 TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
   const Model model(four_bar(3));
-  StepSettings settings;
+  StepSettings settings{.penalty = 1e8};
   EXPECT_TRUE(setting_warnings(model, settings, PenaltyFrom::user).empty());
   for (const auto& [penalty, word] : {std::pair{1e-300, "far below"}, {1e20, "far above"}}) {
     settings.penalty = penalty;

@@ -25,7 +25,9 @@ ModelData hanging_chain(int count) {
   return data;
 }
 
-bool books_all_phases(const char* name, const StepSettings& settings) {
+bool books_all_phases(const char* name, StepSettings settings) {
+  settings.penalty = 1e8;
+  settings.tolerance = 1e-9;
   const Model model(hanging_chain(20));  // too long for the step of small scenes
   const auto simulation = compiled_ldl::create_double(model, settings);
   const std::vector<double> start(model.initial_position().begin(), model.initial_position().end());
@@ -45,8 +47,8 @@ bool books_all_phases(const char* name, const StepSettings& settings) {
 }
 
 State state_after(const Model& model, int steps, bool asks) {
-  const auto simulation =
-      compiled_ldl::create_double(model, {.step = 1e-3, .scheme = Scheme::multistep6});
+  const auto simulation = compiled_ldl::create_double(
+      model, {.step = 1e-3, .penalty = 1e8, .tolerance = 1e-9, .scheme = Scheme::multistep6});
   const std::vector<double> start(model.initial_position().begin(), model.initial_position().end());
   const std::vector<double> zero(model.variables(), 0.0);
   State state{

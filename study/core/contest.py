@@ -96,7 +96,7 @@ def elsewhere(lab, cell):
     here = usual(lab)
     for one in lab.contenders:
         if one not in here:
-            lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded", "on another BLAS pair: timed with the sizes alone")
+            lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded", "on another BLAS pair: timed in the parts map and limit only")
 
 
 def about(lab, scenes):

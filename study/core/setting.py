@@ -6,7 +6,7 @@ from analysis.core.files import ROOT, StudyError, from_yaml
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
 EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "scale-equations", "judge-every"}  # all serve these
-LOOSENED = {"loose": 1e3, "one-pass": 1e6}  # tolerances: so many times the automatic one, which the caller of `words` knows
+LOOSENED = {"loose": 1e3, "one-pass": 1e6}  # tolerances: so many times the automatic one of the scheme, which the caller of `words` knows
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 import json
 import math
 import random
+import re
 import shutil
 from urllib.parse import quote
 
@@ -259,6 +260,7 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
     assert browser.value("explorer.shown.near[0].exact") and browser.value("document.getElementById('n').value") == "100"
     there = f"{SECOND} at commit {COMMIT[:10]}"
     assert f"On {there} it leads too." in said(browser)
+    assert re.fullmatch(r"This answer took \d+ ms here\.", browser.value("document.getElementById('took').textContent"))
     machines = browser.value("[...document.getElementById('machine').options].map((one) => one.text)")
     assert "commit" not in machines[0] and machines[1].startswith(there)
     put(browser, "machine", "second", "change")

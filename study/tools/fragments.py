@@ -48,8 +48,9 @@ def _machines(main, others):
                     for name, one in held.items())
     where = f" (sets {names}, commit {main.facts['context']['commit'][:10]})"
     return [{"case": "Your processor is another one",
-             "take": f"what `build/mbs bench` names there; on {len(sets)} processors{where} the same library is fastest on {count['same']} of {count['all']} "
-                     f"mechanisms, on {count['common']} more one is nowhere shown to be over 5 % slower than the fastest, {count['differ']} differ{rules}"}]
+             "take": f"what `build/mbs bench` names there; on {len(sets)} processors{where} the same library is fastest on {count['same']} of "
+                     f"{count['all']} mechanisms at their own fill; on {count['common']} more, one library is nowhere shown to be over 5 % slower "
+                     f"than the fastest; on {count['differ']} it depends on the processor{rules}"}]
 
 
 def refresh():

@@ -49,13 +49,14 @@ enum class Precision {
 
 /// Settings of the time stepping, fixed for the lifetime of a Simulation. A variant serves what its
 /// mbs::Serves says; the defaults are "The step" of the paper, which all serve, with every value of
-/// `projections`. The program checks the numbers before it creates a simulation (step, penalty and
-/// tolerance are above 0, max_passes and projections_every at least 1): an implementation need not.
+/// `projections`. The program chooses a penalty or tolerance of 0 and checks the numbers before it
+/// creates a simulation (step, penalty and tolerance are above 0, max_passes and projections_every
+/// at least 1): an implementation need not.
 struct StepSettings {
-  double step = 1.25e-3;    ///< Delta t, s
-  double penalty = 1e8;     ///< alpha, kg/(m^2 s^2); of linear rows, Phi in m, N/m
-  double tolerance = 1e-9;  ///< converged once max |Delta q| <= tolerance, m
-  int max_passes = 20;      ///< passes a step at most; the last state is kept and stepping goes on
+  double step = 1.25e-3;   ///< Delta t, s
+  double penalty = 0.0;    ///< alpha, kg/(m^2 s^2); of linear rows, Phi in m, N/m
+  double tolerance = 0.0;  ///< converged once max |Delta q| <= tolerance, m
+  int max_passes = 20;     ///< passes a step at most; the last state is kept and stepping goes on
   Projections projections = Projections::both;
   int projections_every = 1;  ///< steps; the others keep what Eq. (2) gave
   Scheme scheme = Scheme::penalty;

@@ -14,9 +14,10 @@ __all__ = ["BatchStepper", "MultiplierUpdate", "Precision", "Projections", "Refu
 def simulate(scene, duration, implementation="auto", *, every=1, inputs=None, **settings):
     """The outputs of a run as a DataFrame over t, s.
 
-    Rows: the start, then each `every`-th step. `inputs`: by name, one value a step, or a row (value, rate, acceleration) a
-    step. `settings` are those of Stepper. The frame's attrs say who ran it and how many steps ended at the pass limit; it
-    is shorter than `duration` where a step failed.
+    Rows: the start, then each `every`-th step. `inputs`: by name, one value a step (of force, torque, stiffness, damping or
+    factor), or a row (value, rate, acceleration) a step: what moves a point or a constraint needs all three. `settings`
+    are those of Stepper. The frame's attrs say who ran it and how many steps ended at the pass limit; rows are missing from
+    where a step failed. Functions of time are checked for the first step only; beyond a table they go straight on.
     """
     import numpy
     import pandas
@@ -31,7 +32,9 @@ def simulate(scene, duration, implementation="auto", *, every=1, inputs=None, **
 
 
 def simulate_all(scenes, duration, implementation="auto", *, every=1, threads=1, lanes=8, **settings):
-    """The outputs of a run of each scene, as one DataFrame over (scene, t): batches of `lanes` on `threads`."""
+    """The outputs of a run of each scene, as one DataFrame over (scene, t): batches of `lanes` on `threads`.
+
+    Outputs are not a number from where a step of a scene failed."""
     import pandas
 
     scenes = _scenes(scenes)

@@ -106,7 +106,7 @@ void add_settings(json& result, const Model& model, const Structure& structure, 
     result["scheme"] = scheme_json(
         is_open ? Scheme::penalty : Scheme::saddle_point,
         fmt::format("{}, as {} at step {:g} s", is_open ? "penalty form" : "saddle-point form",
-                    is_open ? "the automatic penalty factor is expected to do"
+                    is_open ? "the automatic penalty factor is stable"
                             : "no penalty factor is expected to do",
                     settings.step));
   }
@@ -151,6 +151,7 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
       {"jacobian", matrix(static_cast<long>(jacobian_entries), m * n)},
       {"tangent", matrix(tangent_nonzeros(model), n * n)},
       {"judged_length", judged_length(model)},
+      {"smallest_eigenvalue", smallest},
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};

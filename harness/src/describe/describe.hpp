@@ -23,6 +23,8 @@ namespace mbs {
 /// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
 /// - passes {"penalty", "saddle-point"}: of a step, kUnknownPasses until recommended() counts them;
 /// - elimination, see elimination_json(); features {name: number or null}, README.md;
+/// - smallest_eigenvalue (m^2/kg) of Phi_q M^-1 Phi_q^T at the start, of those above 0; infinite
+///   without constraints, which text has as null;
 /// - judged_length (m), what `mbs simulate` judges estimated and local errors by;
 /// - drivers_end (s; null if drivers are known for ever or there are none);
 /// - penalty_window {step, lower, upper, automatic, lower_from, upper_from} or null;

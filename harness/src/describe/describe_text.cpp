@@ -75,9 +75,10 @@ std::string penalty_text(const json& window) {
   const std::string step = fmt::format("for step {:g} s", window["step"].get<double>());
   const std::string rest = fmt::format("automatic {:.2g}", window["automatic"].get<double>());
   if (!(lower <= upper)) {
-    return fmt::format("no good one {}: {} ask(s) for {:.2g} at least, {} for {:.2g} at most; {}",
-                       step, window["lower_from"].get<std::string>(), lower,
-                       window["upper_from"].get<std::string>(), upper, rest);
+    return fmt::format(
+        "none meets both bounds: {:.2g} at least ({}), {:.2g} at most ({}), estimated {}; {}",
+        lower, window["lower_from"].get<std::string>(), upper,
+        window["upper_from"].get<std::string>(), step, rest);
   }
   return fmt::format("{:.2g} ({}) to {:.2g} ({}), estimated {}; {}", lower,
                      window["lower_from"].get<std::string>(), upper,

@@ -10,17 +10,16 @@
 
 namespace mbs {
 
-double count_passes(const Scene& scene, StepSettings settings, const Variant& variant,
-                    double flops) {
+double count_passes(const Scene& scene, StepSettings settings, const Variant& variant, double flops,
+                    double smallest) {
   constexpr double kMostOperations = 1e9, kFewest = 4;  // of all factorizations, about; steps
   const double affordable = kMostOperations / std::max(flops, 1.0);
   if (affordable < kFewest) return kUnknownPasses;
-  settings.penalty = automatic_penalty(scene.model, settings);
-  settings.tolerance = automatic_tolerance(scene.model, settings);
   const int wanted =
       static_cast<int>(std::min<double>(affordable, most_steps(scene.model.variables())));
   int steps = 0, passes = 0;
   try {
+    settings = chosen(scene.model, settings, smallest);
     const Stretch stretch =
         make_stretch(scene, settings.step, wanted, std::nullopt, settings.scheme);
     const auto simulation = create_simulation(variant, scene.model, settings);
@@ -32,7 +31,7 @@ double count_passes(const Scene& scene, StepSettings settings, const Variant& va
       ++steps;
     }
   } catch (const std::exception&) {
-    // Drivers too fast for the step, or a motion that is lost: those who run it are told.
+    // No factor, drivers too fast for the step, or a lost motion: those who run it are told.
   }
   return steps > 0 ? static_cast<double>(passes) / steps : kUnknownPasses;
 }

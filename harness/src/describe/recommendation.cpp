@@ -196,8 +196,8 @@ json recommended(json description, const Scene& scene, StepSettings settings, bo
       const json& order = description["elimination"]["orderings"]
                                      [scheme == Scheme::penalty ? "AMD" : "saddle-point"];
       if (order.is_null()) continue;
-      description["passes"][name_of(scheme)] =
-          count_passes(scene, of(scheme), *by.variant, order["flops"]);
+      description["passes"][name_of(scheme)] = count_passes(
+          scene, of(scheme), *by.variant, order["flops"], description["smallest_eigenvalue"]);
     }
     description["features"] = features_json(description);
     found = recommendation_json(rule, description, why_not);

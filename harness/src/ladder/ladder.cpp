@@ -21,13 +21,6 @@ namespace {
 
 constexpr const char* kSmallest = "four-bar:1";
 
-/// `settings` with automatic penalty and tolerance.
-StepSettings automatic(const Model& model, StepSettings settings = {}) {
-  settings.penalty = automatic_penalty(model, settings);
-  settings.tolerance = automatic_tolerance(model, settings);
-  return settings;
-}
-
 /// The usual reasons why a check of the gate fails where single steps are right.
 struct GateLesson {
   const char* check;
@@ -68,7 +61,7 @@ class Climber {
     const Scene smallest = load_scene(kSmallest);
     for (const StepRung& rung : step_rungs()) {
       RungReport report = start(rung.name, smallest.name);
-      look(report, rung, smallest.model, automatic(smallest.model), "");
+      look(report, rung, smallest.model, chosen(smallest.model), "");
       if (!finish(report)) return;
     }
     if (!finish(ten_steps(smallest))) return;
@@ -168,7 +161,7 @@ class Climber {
 /// Ten steps in a row, without set_state() in between.
 RungReport Climber::ten_steps(const Scene& scene) const {
   constexpr int kSteps = 10;
-  const StepSettings settings = automatic(scene.model);
+  const StepSettings settings = chosen(scene.model);
   RungReport report = start("ten steps", scene.name);
   report.equation = "\"The step\"";
   report.mistakes = {
@@ -247,7 +240,7 @@ void Climber::judge(RungReport& report, const Scene& scene, const StepSettings& 
 
 RungReport Climber::gate(const std::string& rung, const Scene& scene, StepSettings settings) const {
   RungReport report = start(rung, scene.name);
-  settings = automatic(scene.model, settings);
+  settings = chosen(scene.model, settings);
   report.equation = "\"The step\"";
   const std::string others = other_settings(settings);
   report.command = fmt::format("mbs check {} --implementation {}{}{}", scene.name, variant_.name,

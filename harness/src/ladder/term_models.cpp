@@ -335,9 +335,7 @@ std::vector<TermModel> term_models() {
 
 StepSettings term_settings(const Model& model, StepSettings settings) {
   settings.step = 2.5e-4;
-  settings.penalty = automatic_penalty(model, settings);
-  settings.tolerance = automatic_tolerance(model, settings);
-  return settings;
+  return chosen(model, settings);
 }
 
 std::vector<SettingCase> setting_cases() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "registry/setting_names.hpp"
 #include "scene/row_names.hpp"
@@ -51,7 +52,8 @@ class Finder {
     find(term, kind, items, [](const auto& /*one*/) { return true; });
   }
   void add(Term term, std::string where) {
-    const bool known = std::ranges::any_of(found_, [&](const auto& one) { return one.first == term; });
+    const bool known =
+        std::ranges::any_of(found_, [&](const auto& one) { return one.first == term; });
     if (!known) found_.emplace_back(term, std::move(where));
   }
   std::vector<std::pair<Term, std::string>> found() && { return std::move(found_); }
@@ -204,9 +206,20 @@ std::string why_unsuited(const Model& model, const StepSettings& settings) {
   return "";
 }
 
+namespace {
+
+/// With a factor of 0 nothing would hold the constraints.
+void require_chosen(const StepSettings& settings) {
+  if (settings.penalty > 0.0 && settings.tolerance > 0.0) return;
+  throw std::invalid_argument("penalty and tolerance are not chosen: chosen() of run/settings.hpp");
+}
+
+}  // namespace
+
 std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
                                               const StepSettings& settings) {
   require_served(variant, model, settings);
+  require_chosen(settings);
   return variant.create(model, settings);
 }
 
@@ -215,6 +228,7 @@ std::unique_ptr<BatchSimulation> create_batch(const Variant& variant,
                                               std::span<const StepSettings> settings) {
   if (variant.create_batch == nullptr) return nullptr;
   for (std::size_t i = 0; i < models.size(); ++i) require_served(variant, *models[i], settings[i]);
+  std::ranges::for_each(settings, require_chosen);
   return variant.create_batch(models, settings);
 }
 

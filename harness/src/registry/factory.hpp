@@ -32,7 +32,8 @@ std::string why_not_served(const Serves& serves, const Model& model, const StepS
 /// Why no implementation can simulate `model` with `settings`; empty if nothing forbids it.
 std::string why_unsuited(const Model& model, const StepSettings& settings);
 
-/// variant.create(). Throws Unsupported with why_unsuited() or why_not_served().
+/// variant.create(). Throws Unsupported with why_unsuited() or why_not_served(), and
+/// std::invalid_argument if penalty factor or tolerance is not chosen.
 std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
                                               const StepSettings& settings);
 

@@ -60,8 +60,8 @@ void require_drivers(const Scene& scene, double step, long steps) {
   const double end = static_cast<double>(steps) * step;
   if (end > known + 1e-9 * std::abs(known)) {
     throw UsageError(
-        fmt::format("--duration: the run would end at {:g} s, but a driver's table ends at {:g} s",
-                    end, known));
+        fmt::format("{}: the run would end at {:g} s, but a driver's table ends at {:g} s",
+                    scene.name, end, known));
   }
   for (const Driver& driver : scene.elements.drivers) {
     require_driver(scene.name, driver, step, steps);

@@ -116,7 +116,7 @@ long count_steps(const RunSettings& settings) {
   if (settings.repeats < 1 || settings.repeats > 1000) {
     throw UsageError(fmt::format("--repeats is {}: it must be 1 to 1000", settings.repeats));
   }
-  if (settings.deadline_us) require(*settings.deadline_us, "--deadline-us", "");
+  if (settings.deadline_us) require(*settings.deadline_us, "--deadline-us", " us");
   require(settings.step.penalty, "--penalty", "");
   require(settings.step.tolerance, "--tolerance", " m");
   if (settings.step.max_passes < 1 || settings.step.max_passes > 1000) {

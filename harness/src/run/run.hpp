@@ -43,12 +43,12 @@ struct RunSettings {
   /// Steps between two judgements; none: judge_interval(). The last step is judged too. Where one
   /// finds the solution lost, the steps since the one before are done again to find the first that
   /// was.
-  std::optional<int> judge_every;
+  std::optional<int> judge_every = {};
   /// What half the step is to be simulated with, beside the run, to estimate its error:
   /// HalfStepRun.
-  std::optional<StepSettings> half_step;
-  bool scale_equations = false;       ///< simulate with ScaledEquations
-  std::optional<double> deadline_us;  ///< steps that take longer are counted
+  std::optional<StepSettings> half_step = {};
+  bool scale_equations = false;            ///< simulate with ScaledEquations
+  std::optional<double> deadline_us = {};  ///< steps that take longer are counted
   /// Times the motion is simulated. The repeats are only timed: what interrupts a step of one run
   /// hardly interrupts the same step of another. Steps that are so short that reading the clock
   /// counts are timed in blocks, whose steps then share one time.

@@ -1,4 +1,4 @@
-// The rule for alpha.
+// The rules of automatic_settings.md.
 #include "run/settings.hpp"
 
 #include <fmt/format.h>
@@ -157,24 +157,6 @@ double automatic_penalty(const Model& model, const StepSettings& settings,
   return per_beta * (is_in_reach ? stable : measured);
 }
 
-double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
-  double value = 0.0;
-  if (text == "auto") {
-    value = automatic_penalty(model, settings);
-    if (value > 0.0 && std::isfinite(value)) return value;
-    throw UsageError(
-        fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
-                    "lengths or masses are out of range; name a number",
-                    value, settings.step));
-  }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
-      !(value > 0.0)) {
-    throw UsageError(fmt::format("--penalty is '{}': it must be 'auto' or a number above 0", text));
-  }
-  return value;
-}
-
 namespace {
 
 /// Whether a step is longer than 2 m/c of some coordinate. Then the trapezoidal rule turns what is
@@ -206,6 +188,32 @@ double automatic_tolerance(const Model& model, const StepSettings& settings) {
       std::min(is_quadratic ? 1e-8 * std::pow(of_paper, 2) : 1e-9 * std::pow(of_paper, 4), 1e-6);
   return std::max({wanted, 10 * rounding_noise(model, settings, stiffness),
                    10 * unit_roundoff(settings.precision) * largest_coordinate(model)});
+}
+
+StepSettings chosen(const Model& model, StepSettings settings, std::optional<double> smallest) {
+  if (settings.penalty == 0.0) {
+    settings.penalty = automatic_penalty(model, settings, smallest);
+    if (!(settings.penalty > 0.0) || !std::isfinite(settings.penalty)) {
+      throw UsageError(
+          fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
+                      "lengths or masses are out of range; name a number",
+                      settings.penalty, settings.step));
+    }
+  }
+  if (settings.tolerance == 0.0) settings.tolerance = automatic_tolerance(model, settings);
+  return settings;
+}
+
+double parse_automatic(const char* option, const std::string& text, const char* what) {
+  if (text == "auto") return 0.0;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
+      !(value > 0.0)) {
+    throw UsageError(
+        fmt::format("{} is '{}': it must be 'auto' or a number above 0{}", option, text, what));
+  }
+  return value;
 }
 
 }  // namespace mbs

@@ -7,10 +7,10 @@
 
 namespace mbs::test {
 
-/// Of `duration` (s), with the automatic penalty factor.
+/// Of `duration` (s), with automatic penalty factor and tolerance.
 inline RunSettings automatic_settings(const Scene& scene, double duration) {
   RunSettings settings;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.step = chosen(scene.model);
   settings.duration = duration;
   return settings;
 }

@@ -35,10 +35,13 @@ def no_evidence(studyset):
                      if found["pairs"] and not found["sound"] else "")
 
 
-def gains(sets):
-    """{contender: [of each machine the geometric mean of a step's time ÷ that on the first]}, over the families' scenes, in the penalty form."""
+def gains(sets, together=()):
+    """{contender: [of each machine the geometric mean of a step's time ÷ that on the first]}, over the families' scenes, in the penalty form: its
+    own, or those where all of `together` were timed."""
     rows = [table(one.folder, "families", "scenes").loc[lambda rows: (rows.status == "ok") & (rows.scheme == "penalty")] for one in sets]
     times = pandas.concat([one.set_index(["implementation", "scene"]).step_us for one in rows], axis=1, join="inner", keys=range(len(sets)))
+    for name in together:
+        times = times[times.index.isin(times.index[times.index.get_level_values(0) == name].get_level_values(1), level=1)]
     found = times.div(times[0], axis=0).groupby(level=0).agg(gmean).sort_values(len(sets) - 1)
     return {name: [*one] for name, one in zip(found.index, found.to_numpy())}
 

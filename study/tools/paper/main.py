@@ -20,9 +20,10 @@ def paper(arguments):
     parser = Parser(prog="study/paper", description="Builds paper/build/paper.pdf from a stored set. The build fails where the paper types a number, "
                     "names one that is not there, or claims what the set does not say.")
     parser.add_argument("set", nargs="?", type=directory, help="its directory (the one that the rule of `mbs describe` names)")
-    parser.add_argument("--audit", action="store_true", help="only say what is wrong, a line each; needs no LaTeX")
-    parser.add_argument("--claims", action="store_true", help="only say which claims hold in a set, a line each; also in one that is not stored")
-    parser.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
+    one = parser.add_mutually_exclusive_group()
+    one.add_argument("--audit", action="store_true", help="only say what is wrong, a line each; needs no LaTeX")
+    one.add_argument("--claims", action="store_true", help="only say which claims hold in a set, a line each; also in one that is not stored")
+    one.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
     options = parser.parse_args(arguments)
     known = Known((options.set or main_set()).resolve())
     if options.claims:

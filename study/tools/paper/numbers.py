@@ -17,7 +17,7 @@ from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
 NOTHING = ("", "–", "nan")  # texts of what is not measured
-DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # the same factorization, assembled densely and sparsely
+DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # Eigen's Cholesky kernels, assembled densely and sparsely
 SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
 
 
@@ -99,7 +99,9 @@ def _design(known):
     registry, file = known.registry, f"{known.folder.name}/registry.json"
     scenes, tried = known.tables("families")["scenes"], known.tables("tuning")["alternatives"]
     timed, table = tried[tried.status == "ok"], "tuning/alternatives"
-    return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
+    folders = {name.partition("/")[0] for name in registry.libraries}
+    return {"libraries": Number(str(len(registry.libraries)), file), "folders": Number(str(len(folders)), file),
+            "own": Number(str(len(registry.own)), file),
             "equal": Number(percent(timing.EQUIVALENT - 1), "analysis/core/timing.py"),
             "confidence": Number(percent(timing.CONFIDENCE), "analysis/core/timing.py"),
             "processes": of_rows(lambda rows: span(rows.processes), "families/scenes", scenes[scenes.processes.notna()]),
@@ -133,7 +135,7 @@ def _machines(known):
     shares = agreement.shares(agreement.mechanisms(sets, known.agreed))
     kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
-    rates, gained = [machine.rates(one) for one in sets], machine.gains(sets)
+    rates, gained = [machine.rates(one) for one in sets], machine.gains(sets) | machine.gains(sets, (HYBRID, SCALAR))
     beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
               for name, rate in (("rate", "flops_per_ns"), ("latency", "add_ns"))}
     steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}
@@ -205,7 +207,7 @@ def _fill(known):
 
 
 def profiled(known):
-    """Steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same factorization were."""
+    """Steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of these were."""
     rows = known.tables("limit")["steps"].loc[lambda rows: (rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
     sizes = [size for size, mine in rows.groupby("variables") if {DENSE, HYBRID} <= set(mine.implementation)]
     return rows[rows.variables == max(sizes)] if sizes else rows[:0]

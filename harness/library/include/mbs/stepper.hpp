@@ -2,6 +2,7 @@
 // example.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -59,7 +60,7 @@ struct StepperOptions {
   /// the penalty form and its factor is left to choose, in the form that suits the scene.
   std::string implementation = "auto";
   /// A penalty or tolerance of 0 is chosen from the scene, as `mbs simulate` does.
-  StepSettings settings = {.penalty = 0.0, .tolerance = 0.0};
+  StepSettings settings = {};
 };
 
 /// An implementation of this build, and the library that it stands on.
@@ -106,8 +107,10 @@ class Stepper {
   Stepper& operator=(Stepper&&) noexcept;
   ~Stepper();
 
-  [[nodiscard]] const std::string& implementation() const;  ///< the one chosen
-  [[nodiscard]] const StepSettings& settings() const;       ///< with the chosen numbers
+  /// The one chosen. "auto" chooses the form of the step, too: who names the same again needs the
+  /// same settings().scheme.
+  [[nodiscard]] const std::string& implementation() const;
+  [[nodiscard]] const StepSettings& settings() const;  ///< with the chosen numbers
 
   /// Names of the scene's {"input": ...}, and columns of its "outputs" ("hub.x", "hub.y").
   [[nodiscard]] std::span<const std::string> input_names() const;
@@ -117,10 +120,12 @@ class Stepper {
   [[nodiscard]] int output(std::string_view name) const;
 
   /// What an input is from the next step on; of a function of time: its value at the end of that
-  /// step. Forces, torques, stiffnesses, dampings and factors need the value alone. What moves a
-  /// point or a constraint needs its rate (per s) and acceleration (per s^2) too, consistent with
-  /// each other. Throws Refused with the names if there is no such input, and where a scene file
-  /// would: not a finite number, a negative stiffness or damping, a distance that is not above 0.
+  /// step. Forces, torques, stiffnesses, dampings and factors need the value alone. Over the step a
+  /// force goes straight from its last value to the new one, so that a command acts half a step
+  /// late. What moves a point or a constraint (m, rad) needs its rate (per s) and acceleration (per
+  /// s^2) too, consistent with each other, anew for each step: both are kept. Throws Refused with
+  /// the names if there is no such input, and where a scene file would: not a finite number, a
+  /// negative stiffness or damping, a distance that is not above 0.
   void set_input(int input, double value, double rate = 0.0, double acceleration = 0.0);
 
   /// Delta t further.
@@ -128,6 +133,8 @@ class Stepper {
   /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them,
   /// passes and factorizations are sums. Throws Refused if `steps` is below 1.
   [[nodiscard]] StepOutcome step(long steps);
+  template <std::floating_point Number>
+  StepOutcome step(Number steps) = delete;  ///< a time is no number of steps
 
   /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every
   /// time.
@@ -170,8 +177,12 @@ class BatchStepper {
 
   /// A lane counts from 0; Refused is thrown for any other. Inputs and outcomes as a Stepper's.
   void set_input(int lane, int input, double value, double rate = 0.0, double acceleration = 0.0);
-  /// All lanes Delta t further; one outcome a lane. A lane that failed goes no further.
+  template <std::floating_point Number>
+  void set_input(int lane, Number value, double = 0.0, double = 0.0) = delete;  ///< of which input?
+  /// All lanes Delta t further; one outcome a lane. A lane that failed goes no further: its state
+  /// and outputs are Refused.
   [[nodiscard]] std::span<const StepOutcome> step();
+  [[nodiscard]] double t() const;  ///< s, of the lanes that have not failed
   [[nodiscard]] const State& state(int lane);
   [[nodiscard]] std::span<const double> outputs(int lane);
 
