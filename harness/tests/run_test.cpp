@@ -94,6 +94,7 @@ TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
       const Scene scene = load_scene(name);
       RunSettings settings = test::automatic_settings(scene, 20.0);
       settings.step.penalty = penalty;
+      settings.step.tolerance = 1e-9;
       const RunSummary summary = run(scene, *variant.variant, settings);
       EXPECT_EQ(summary.status, RunStatus::diverged) << variant.name << " on " << name;
       EXPECT_NE(summary.reason, "");
