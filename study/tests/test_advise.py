@@ -558,7 +558,7 @@ def record_of(folder, run):
 @pytest.fixture(scope="module")
 def advised(tmp_path_factory):
     folder = tmp_path_factory.mktemp("advised")
-    return folder, *ask(folder, "--error", "3e-5")
+    return folder, *ask(folder, "--error", "3e-5", "--budget", "300")  # others may run beside
 
 
 def test_the_advice_is_as_accurate_as_asked_and_traces_to_its_raw_files(advised):
