@@ -24,7 +24,7 @@ def cases(tables, view):
     """Row of the front page's table: at the largest size what each error takes, those that take the same together."""
     won = met(own_fill(tables["winners"]))
     rows = won[(won.layer == "libraries") & (won.variables == won.variables.max())].sort_values("required", ascending=False)
-    options = {one.name: " ".join(one.words()).removeprefix("--scheme penalty").strip() for one in read_settings()}
+    options = {one.name: one.typed for one in read_settings()}
     errors = {}
     for one in rows.itertuples():
         given = options.get(one.setting, f"setting {one.setting}")

@@ -5,13 +5,12 @@ from scipy import special
 
 from analysis.accuracy.winners import NEAR
 from analysis.core import timing
-from analysis.core.files import ROOT, from_yaml
 from analysis.core.registry import ANCHOR
 from analysis.core.style import Look
 from analysis.core.view import Folder, facts_of
 from analysis.explorer import data
+from study.core.setting import read_settings
 
-SETTINGS = ROOT / "study" / "settings.yaml"
 MOST = 200  # processes of an interval
 
 
@@ -23,10 +22,8 @@ def context(folder):
     registries = [Folder(one).registry for one in sets]
     about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
-    settings = from_yaml(SETTINGS.read_text(encoding="utf-8"))["settings"]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
-             "settings": {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}"
-                                                for key, value in one.get("options", {}).items()) for one in settings},
+             "settings": {one.name: one.typed for one in read_settings()},
              "equivalent": timing.EQUIVALENT, "anchor": ANCHOR, "near": NEAR,
              "quantiles": special.stdtrit(range(1, MOST), (1 + timing.CONFIDENCE) / 2).tolist()}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)

@@ -29,6 +29,9 @@ class Setting:
             found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
         return found - {"penalty", "double"}
 
+    # As one types it, without what is the default.
+    typed = property(lambda self: " ".join(self.words()).removeprefix("--scheme penalty").strip())
+
     # How many times the automatic tolerance its own is; None if it does not refer to that.
     loosened = property(lambda self: LOOSENED.get(dict(self.changes).get("tolerance")))
 
