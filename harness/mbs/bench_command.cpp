@@ -16,7 +16,6 @@
 #include "bench/operation_rows.hpp"
 #include "bench/reporters.hpp"
 #include "bench/scene_timing.hpp"
-#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "environment/machine.hpp"
 #include "mbs/bench_flags.hpp"
@@ -139,29 +138,27 @@ int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& re
 }
 
 /// What about the settings is likely to spoil the motion, once a scene.
-void warn(const std::vector<PlannedCell>& cells, PenaltyFrom from) {
+void warn(const std::vector<PlannedCell>& cells, const StepOptions& step) {
   const PlannedScene* last = nullptr;
   for (const PlannedCell& cell : cells) {
     if (std::exchange(last, cell.scene) == cell.scene) continue;
     const std::string& name = last->scene.name;
     show_doing(fmt::format("{}: looking at the settings", name));
-    const auto warnings = setting_warnings(last->scene.model, last->settings, from);
+    const auto warnings = step.warnings(last->scene.model, last->settings);
     show_doing("");
-    for (const std::string& warning : warnings) {
-      fmt::print(stderr, "mbs: warning: {}: {}\n", name, warning);
-    }
+    print_warnings(name, warnings);
   }
 }
 
 int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-              const BenchFlags& flags, PenaltyFrom from) {
+              const BenchFlags& flags, const StepOptions& step) {
   for (const std::string& scene : request.scenes) {
     require_not_scene("--benchmark_out", flags.out, scene);
   }
   BenchOutput output(flags.out);
   stay_on_this_processor();
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
-  if (!request.operations) warn(cells, from);
+  if (!request.operations) warn(cells, step);
   if (request.operations || request.batch) return run_benchmarks(cells, request, output);
   return time_steps(cells, request, flags, output);
 }
@@ -196,8 +193,7 @@ int bench_command(int argc, char** argv) {
     for (const PlannedCell& cell : cells) fmt::print("{}\n", cell.name);
     return 0;
   }
-  return run_cells(cells, request, flags,
-                   step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
+  return run_cells(cells, request, flags, step);
 }
 
 }  // namespace mbs

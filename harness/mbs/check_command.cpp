@@ -10,7 +10,6 @@
 
 #include "atomic_file.hpp"
 #include "check/gate.hpp"
-#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "ladder/ladder.hpp"
 #include "mbs/commands.hpp"
@@ -123,11 +122,7 @@ void check_scene(const CheckOptions& options, const Scene& scene,
   if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {
     reference = run_reference(scene, settings, options.steps);
   }
-  for (const std::string& warning : setting_warnings(
-           scene.model, settings,
-           options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
-    fmt::print(stderr, "mbs: warning: {}: {}\n", scene.name, warning);
-  }
+  print_warnings(scene.name, options.step.warnings(scene.model, settings));
   for (const NamedVariant& variant : variants) {
     verdicts.push_back(
         check_implementation(scene, variant, settings, reference, {.seconds = options.time_limit}));

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "mbs/simulation.hpp"
 #include "registry/registry.hpp"
@@ -35,7 +36,13 @@ struct StepOptions {
   void add_to(CLI::App& command);
   /// Throws UsageError if a value is out of range.
   [[nodiscard]] StepSettings resolve(const Model& model) const;
+  /// What about `resolved`, these for `model`, is likely to spoil its motion.
+  [[nodiscard]] std::vector<std::string> warnings(const Model& model,
+                                                  const StepSettings& resolved) const;
 };
+
+/// A line on stderr for each of `warnings` about `scene`.
+void print_warnings(const std::string& scene, const std::vector<std::string>& warnings);
 
 /// Makes every option and argument of `command` refuse what would be read as something else: an
 /// empty text as 0 or as not given, the number 010 as 8, 0x10 as 16.

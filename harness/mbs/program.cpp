@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "describe/warnings.hpp"
 #include "environment/blas.hpp"
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
@@ -141,6 +142,18 @@ StepSettings StepOptions::resolve(const Model& model) const {
   result.penalty = parse_automatic("--penalty", penalty);
   result.tolerance = parse_automatic("--tolerance", tolerance, " (m)");
   return chosen(model, result);
+}
+
+std::vector<std::string> StepOptions::warnings(const Model& model,
+                                               const StepSettings& resolved) const {
+  return setting_warnings(model, resolved,
+                          penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
+}
+
+void print_warnings(const std::string& scene, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    fmt::print(stderr, "mbs: warning: {}: {}\n", scene, warning);
+  }
 }
 
 int run_program(int argc, char** argv) {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "describe/warnings.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
@@ -109,9 +108,7 @@ int simulate(const SimulateOptions& options) {
     settings.half_step = half.resolve(scene.model);
   }
   require_duration(scene, settings);
-  std::vector<std::string> warnings =
-      setting_warnings(model, settings.step,
-                       options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
+  std::vector<std::string> warnings = options.step.warnings(model, settings.step);
   add_judging_warning(scene, settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "atomic_file.hpp"
-#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
@@ -176,11 +175,7 @@ int sweep(const SweepOptions& options) {
                     "--resume, which makes it anew",
                     printable(options.output, kLongestPath)));
   }
-  for (const std::string& warning :
-       setting_warnings(grid.base().model, settings,
-                        options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
-    fmt::print(stderr, "mbs: warning: {}: {}\n", grid.base().name, warning);
-  }
+  print_warnings(grid.base().name, options.step.warnings(grid.base().model, settings));
   std::vector<long> mine;
   for (long block = shard.index; block < blocks.count(); block += shard.count)
     mine.push_back(block);
