@@ -109,7 +109,7 @@ def apart(rows, column="step_us"):
 
 
 class Ratio(namedtuple("Ratio", "value low high chance", defaults=(math.nan,))):
-    """With its interval. `chance`: to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)."""
+    """With its interval. `chance`: to find it so far from 1, or farther, where it is 1 (Student's, two-sided: nobody knows before who leads)."""
     def columns(self, name="ratio", ends=""):
         return {name: self.value, f"{ends}low": self.low, f"{ends}high": self.high}
 
@@ -151,7 +151,7 @@ def ratio(rows, first, second):
     if len(logs) == 1:
         return Ratio(math.exp(logs[0]), 0.0, math.inf)
     middle, half, error, freedom = student(logs, *rows.beyond)
-    chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
+    chance = 2 * float(special.stdtr(freedom, -abs(middle) / error)) if error else float(middle == 0)
     return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
@@ -179,7 +179,8 @@ def log_ratios(rows, first, second):
     if direct or not (mine and other):
         return direct
     environments = [next(iter(one))[0] for one in (mine, other)]
-    there = [{name.partition("+")[0]: found for name, found in logs.items() if any(key[0] == one for key in found)} for one in environments]
+    there = [{name.partition("+")[0]: found for name, found in logs.items() if not name.endswith(TWIN) and any(key[0] == one for key in found)}
+             for one in environments]
     shared = there[0].keys() & there[1].keys()
     anchor = ANCHOR if ANCHOR in shared else min(shared - {name.partition("+")[0] for name in (first, second)}, default=None)
     first, second = ({key[1]: _median(samples, known[anchor][key]) for key, samples in one.items() if key in known.get(anchor, ())}

@@ -8,7 +8,7 @@ from analysis.engines.runs import NATIVE
 LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, where noise would decide who meets one
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
 CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
-SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "library": "the fastest library", "paper": "the paper's scheme"}
+SIDES = {"chains": "our code for chains", "fronts": "our general code", "library": "the fastest library", "paper": "the paper's scheme"}
 NEAR = 1.3   # untimed times are this uncertain
 MOST = 2     # candidates of a side for one run of an engine
 

@@ -1,7 +1,8 @@
 // The answer on the page: sentences, rankings with their raw rows, commands. Each function fills one place.
 "use strict";
 
-const GROUPS = {fastest: "fastest", "as fast": "as fast", open: "open", slower: "slower", rough: "slower, by a first look"};
+const GROUPS = {fastest: "fastest", "as fast": "as fast", open: "open", slower: "slower", rough: "slower, by a first look",
+                yours: "timed by you alone"};
 const place = (id) => document.getElementById(id);
 const times = (one) => `${short(one.value)}×` + (one.low < one.high && one.high < Infinity ? ` (${short(one.low)} to ${short(one.high)})` : one.value === 1 ? "" : " (not bounded)");
 const about = (contest) => `${contest.scene} (n = ${short(contest.n, 5)}, fill ${short(contest.fill)} %, ${contest.form} form)`;
@@ -19,20 +20,22 @@ function groupOf(ranking, name) {
   return name === ranking.winner ? "fastest" : ranking.equivalent.includes(name) ? "as fast" : ranking.open.includes(name) ? "open" : "slower";
 }
 
-// Rows of a contest among those that are left: who was ranked, then who was only looked at.
+// Rows of a contest among those that are left: who was ranked, who was only looked at, then whom the reader alone timed. The reader's
+// own times become ratios by the first of the others that has one.
 function rowsOf(contest, ranking, names, mine) {
-  const own = new Map((mine?.own ?? []).map((one) => [one.name, one.us]));
-  const ratio = new Map(ranking.ratios.map(([name, one]) => [name, one.value]));
-  const first = ranking.ratios.map(([name]) => name).find((name) => own.has(name));
-  const rows = ranking.ratios.map(([name, one]) => ({name, ...one, step: stepOf(contest, name), group: groupOf(ranking, name),
-    own: own.has(name) ? {us: own.get(name), value: own.get(name) / own.get(first) * ratio.get(first)} : null, raw: () => rawOf(contest, name)}));
+  const rows = ranking.ratios.map(([name, one]) =>
+    ({name, ...one, step: stepOf(contest, name), group: groupOf(ranking, name), raw: () => rawOf(contest, name)}));
+  const rough = (name, group, value, step, ...why) =>
+    rows.push({name, value, low: NaN, high: NaN, step, group, hollow: true, raw: () => [["status", "reason"], why]});
   const base = contest.look.get(ranking.winner);
   for (const {name, status, reason} of contest.lost)
-    if (names.has(name) && ["slower", "excluded"].includes(status) && contest.look.has(name) && base > 0) {
-      const value = contest.look.get(name) / base;
-      rows.push({name, value, low: NaN, high: NaN, step: contest.look.get(name), group: "rough", hollow: true, own: null,
-                 raw: () => [["status", "reason"], [status, reason]]});
-    }
+    if (names.has(name) && ["slower", "excluded"].includes(status) && contest.look.has(name) && base > 0)
+      rough(name, "rough", contest.look.get(name) / base, contest.look.get(name), status, reason);
+  const own = new Map((mine?.own ?? []).map((one) => [one.name, one.us])), first = rows.find((row) => own.has(row.name));
+  const ratio = (name) => own.get(name) / own.get(first.name) * first.value;
+  for (const name of first ? own.keys() : [])
+    if ((names.has(name) || !ABOUT.has(name)) && !rows.some((row) => row.name === name)) rough(name, "yours", ratio(name), NaN, "–", GROUPS.yours);
+  for (const row of rows) row.own = own.has(row.name) ? {us: own.get(row.name), value: ratio(row.name)} : null;
   return rows.sort((a, b) => (a.group !== "fastest") - (b.group !== "fastest") || a.value - b.value);
 }
 
@@ -74,7 +77,8 @@ function fillNear(found, mine) {
   target.replaceChildren();
   found.rows = found.near.map((one) => rowsOf(one.contest, one.ranking, found.names, mine));
   found.near.forEach(({contest, ranking, exact}, i) => {
-    const rows = found.rows[i].map((row) => ({...row, text: row.hollow ? `about ${short(row.value, 2)}× (a look)` : times(row)}));
+    const rough = (row) => `about ${short(row.value, 2)}× (${row.group === "yours" ? "yours" : "a look"})`;
+    const rows = found.rows[i].map((row) => ({...row, text: row.hollow ? rough(row) : times(row)}));
     const failed = contest.lost.filter((one) => found.names.has(one.name) && !["slower", "excluded", "dropped"].includes(one.status));
     const note = (exact ? "Measured at this very case. " : found.near.length > 1 ? "Measured beside the case. " : "The nearest that was measured. ")
       + (ranking.decided ? "Decided." : ranking.settled ? "Several are as fast, to 5 %." : "Not decided: this run does not tell which of the open ones is fastest.")
@@ -97,9 +101,11 @@ function fillPredicted(found, state) {
     own: own.has(one.name) ? {us: own.get(one.name), value: own.get(one.name)} : null, text: `${short(one.value)} µs (${range(one)})`,
     raw: () => [["feature", "amount", "µs each", "µs"], ...one.terms.map((term) => [term.feature, short(term.amount, 5), short(term.us), short(term.product)])]}));
   fillRanking(target, "model-0", `µs a step at n = ${short(found.asked.n, 5)}, fill ${short(found.features.fill)} %, ${found.form} form`,
-              "Interpolated: sums of the case's numbers, fitted on all mechanisms of the set, as mbs describe does it. Lines: where nine of "
-              + "ten times lie, judged on families left out. " + (found.asked.features?.n > 0 ? "The numbers are those of the scene itself." :
-                "The numbers of the case are those of the nearest mechanisms, scaled to it."), rows, "µs a step, interpolated",
+              "Interpolated: sums of the case's numbers, fitted on all mechanisms of the set. mbs describe uses such sums too, but "
+              + "puts one of few candidates first, chosen with caution. Lines: where nine of ten times lie, judged on families left out. "
+              + (found.asked.features?.n > 0 ? "The numbers are those of the scene itself."
+                                             : "The numbers of the case are those of the nearest mechanisms, scaled to it."),
+              rows, "µs a step, interpolated",
               [["contender", (row) => row.name], ["µs a step", (row) => short(row.value)], ["range", range],
                ...(state.deadline ? [["deadline", (row) => row.group]] : []), ...yours(state.mine)],
               state.deadline ? {value: state.deadline, text: "deadline"} : null);
@@ -107,7 +113,7 @@ function fillPredicted(found, state) {
 
 const range = (one) => `${short(one.low)} to ${short(one.high)}`;
 const yours = (mine) => mine?.own.length ? [["yours, µs", (row) => row.own ? short(row.own.us) : "–"]] : [];
-const fits = (one, deadline) => !deadline ? "" : one.high <= deadline ? "kept" : one.low > deadline ? "missed" : "not said";
+const fits = (one, deadline) => !deadline ? "" : one.high <= deadline ? "mean below" : one.low > deadline ? "mean above" : "not said";
 
 function fillError(found, state) {
   const target = place("points");
@@ -169,23 +175,25 @@ function fillAnswer(found, state) {
   place("answer").replaceChildren(...lines.map((line) => element("p", {}, ...line)), ...found.warnings.map((one) => element("p", {class: "warn"}, one)));
 }
 
-// The scene as the program takes it: the case itself if its size is one of a family, else the nearest that was measured.
-function sceneOf(found) {
-  const {asked, near} = found;
-  if (asked.scene) return {scene: asked.scene};
-  const [kind, filled] = asked.family.split(", ");
-  const line = DATA.sizes.find(([name, more]) => name === kind && (!more || near[0]?.contest.scene.endsWith(more)));
-  const size = line ? Math.round((asked.n - line[3]) / line[2]) : 0;
-  if (size > 0 && (!filled || asked.fill)) return {scene: `${kind}:${size}${line[1]}${filled ? `,fill=${short(asked.fill / 100)}` : ""}`};
-  return {scene: near[0]?.contest.scene ?? "scene.json", nearest: true};
+// {scene, note}, as the program takes it: the case itself, or nearly, if its family has sizes, else the nearest that was measured.
+function sceneOf({asked, near}) {
+  if (asked.scene) return {scene: asked.scene, note: ""};
+  const [kind, filled] = asked.family.split(", "), nearest = near[0]?.contest.scene ?? "scene.json";
+  const like = nearest.replace(/:\d+|,fill=[\d.]+/g, "");  // of the family with the same options
+  const [, more, each, rest] = DATA.sizes.find(([name, options]) => name === kind && name + options === like) ?? [];
+  const size = each ? Math.round((asked.n - rest) / each) : 0, n = each * size + rest;
+  if (size > 0 && (!filled || asked.fill))
+    return {scene: `${kind}:${size}${more}${filled ? `,fill=${short(asked.fill / 100)}` : ""}`,
+            note: Math.abs(n - asked.n) < 1e-6 ? "" : `The commands are of the nearest size: ${short(n, 6)} variables, not ${short(asked.n, 6)}.`};
+  return {scene: nearest, note: "The case has no name that mbs knows; the commands are those of the nearest scene. Put your own in its place."};
 }
 
 // A word of a command line, which is no option of it.
 const quoted = (word) => word.startsWith("-") ? quoted(`./${word}`) : /^[\w:.,=/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 
 function commandsOf(found, state) {
-  const {scene, nearest} = sceneOf(found), ranking = found.near[0]?.ranking, word = quoted(scene), lines = [];
-  if (!ranking) return {lines, nearest};
+  const {scene, note} = sceneOf(found), ranking = found.near[0]?.ranking, word = quoted(scene), lines = [];
+  if (!ranking) return {lines, note: ""};
   const lead = ranking.ratios.slice(0, 4).map(([name]) => name), form = found.form === "saddle-point" ? " --scheme saddle-point" : "";
   lines.push(`build/mbs bench ${word} --implementation=${lead.join(",")}${form}`);
   const best = found.error?.ranking?.winner;
@@ -193,5 +201,5 @@ function commandsOf(found, state) {
                   : `build/mbs simulate ${word} --implementation ${ranking.winner}${form}`);
   lines.push(`study/advise ${word} --error ${state.error ?? 1e-3}` + (state.deadline ? ` --deadline-us ${state.deadline}` : "")
              + (state.no.length || state.without.length ? ` --only ${lead.join(" ")}` : ""));
-  return {lines, nearest};
+  return {lines, note};
 }

@@ -114,9 +114,14 @@ function pin(here, cx, cy, width) {
           {"text-anchor": right ? "end" : "start", "font-weight": 600, "paint-order": "stroke", stroke: "var(--paper)", "stroke-width": 3}));
 }
 
-// An SVG by itself: colours of the page as it is shown, instead of their names.
-function standalone(svg) {
-  const style = getComputedStyle(document.documentElement), copy = svg.cloneNode(true);
-  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+// An SVG by itself: colours of the page as it is shown, instead of their names; below it a line that says what it is of.
+function standalone(svg, line) {
+  const style = getComputedStyle(document.documentElement), copy = svg.cloneNode(true), below = 20;
+  const [width, height] = ["width", "height"].map((name) => Number(svg.getAttribute(name)));
+  const size = Math.min(11, 1.8 * (width - 20) / line.length);  // so that a long one fits
+  for (const [name, value] of [["xmlns", "http://www.w3.org/2000/svg"], ["viewBox", `0 0 ${width} ${height + below}`], ["height", height + below]])
+    copy.setAttribute(name, value);
+  copy.append(element("rect", {y: height, width, height: below, fill: "var(--paper)"}),
+              words(10, height + 13, line, {fill: SOFT, "font-size": size}));
   return new XMLSerializer().serializeToString(copy).replace(/var\((--\w+)\)/g, (_, name) => style.getPropertyValue(name).trim());
 }

@@ -5,13 +5,16 @@ const BOXES = [...KINDS, "penalty", "saddle"], NUMBERS = ["n", "fill", "error", 
 const PICTURES = [["svg-map", "map", "map.svg"], ["svg-ranking", "near", "ranking.svg"]];  // button, place of the picture, file
 let state = {...START}, shown = null;
 
+// The family that is wanted, if a set has it.
+const familyIn = (set, wanted) => [wanted, START.family].find((one) => ["", ...familiesOf(set)].includes(one)) ?? "";
+
 function readAddress() {
   const given = new URLSearchParams(location.hash.slice(1)), found = {...START, machine: DATA.sets[0].name};
   const listed = (key) => (given.get(key) ?? "").split(",").filter(Boolean);
   for (const key of NUMBERS) if (given.has(key)) found[key] = positive(key, given.get(key)) ?? (key === "n" ? START.n : null);
   if (DATA.sets.some((one) => one.name === given.get("machine"))) found.machine = given.get("machine");
   const set = setOf(found);
-  found.family = [given.get("family"), START.family].find((one) => one !== null && ["", ...familiesOf(set)].includes(one)) ?? "";
+  found.family = familyIn(set, given.get("family"));
   if (set.contests.some((one) => one.scene === given.get("scene"))) found.scene = given.get("scene");
   found.no = listed("no").filter((one) => BOXES.includes(one));
   found.without = listed("without").filter((one) => ABOUT.has(one));
@@ -100,9 +103,8 @@ function fillMap(found) {
 }
 
 function fillCommands(found) {
-  const {lines, nearest} = commandsOf(found, state);
-  const note = "The case has no name that mbs knows; the commands are those of the nearest scene. Put your own in its place.";
-  place("copy").replaceChildren(nearest && lines.length ? element("p", {class: "soft"}, note) : "", ...lines.map((line) => element("div", {class: "command"},
+  const {lines, note} = commandsOf(found, state);
+  place("copy").replaceChildren(note && element("p", {class: "soft"}, note), ...lines.map((line) => element("div", {class: "command"},
     element("pre", {tabindex: 0}, line),
     element("button", {type: "button", "aria-label": `copy: ${line}`, onclick: (event) => copy(line, event.target)}, "copy"))));
 }
@@ -137,6 +139,7 @@ function show() {
 
 function change(more) {
   state = {...state, ...more};
+  if (more.mine === null) place("file").value = place("mine-said").textContent = "";  // so that the same file can be chosen again
   writeAddress();
   show();
 }
@@ -147,7 +150,9 @@ async function useText(source) {
     const text = await source, mine = readScene(text);
     place("mine").value = text;
     change({mine, scene: ""});
-    place("mine-said").textContent = `${mine.scene}: n = ${mine.n}` + (mine.own.length ? `, ${mine.own.length} measurements, drawn as diamonds` : "")
+    const drawn = new Set([...document.querySelectorAll("polygon.own")].map((one) => one.parentNode.dataset.name)).size;
+    place("mine-said").textContent = `${mine.scene}: n = ${mine.n}`
+      + (mine.own.length ? `, ${mine.own.length} measurements, ${drawn} drawn as diamonds` : "")
       + (mine.unable.length ? "; those who do not take it are left out" : "");
   } catch (error) {
     place("mine-said").textContent = `not used: ${error.message}`;
@@ -157,7 +162,8 @@ async function useText(source) {
 const textOf = (file) => file.slice(0, MOST_TEXT + 1).text();  // no more than is needed to see that it is too long
 
 const cell = (value) => {
-  const text = typeof value === "string" ? value.replace(/^(?=[=+@\t\r-])/, "'") : String(value ?? "");  // a spreadsheet would take it for a formula
+  const text = typeof value !== "string" ? Number.isFinite(value) ? String(value) : ""
+    : value.replace(/^(?=[=+@\t\r-])/, "'");  // a spreadsheet would take it for a formula
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 };
 
@@ -170,7 +176,14 @@ function asCsv() {
     lines.push(["interpolated", ...common, asked.scene, form, asked.n, row.name, "", "", row.low, row.high, row.value, ""]);
   for (const {point, group, value, low, high} of errorRows ?? [])
     lines.push(["error", ...common, error.curve.scene, point.setting, error.curve.n, point.name, group, value, low, high, 1e6 * point.time * point.step, ""]);
-  return lines.map((row) => row.map((one) => cell(Number.isNaN(one) ? "" : one)).join(",")).join("\n") + "\n";
+  return lines.map((row) => row.map(cell).join(",")).join("\n") + "\n";
+}
+
+// What a saved picture is of: scene or form, machine, day and who was left out, as the boxes say it.
+function lineOf(from) {
+  const out = [...state.no.map((key) => place(key).parentNode.textContent.trim()), ...state.without, ...(state.mine?.unable ?? [])];
+  return [from === "near" ? about(shown.near[0].contest) : `${shown.form} form`, machineOf(shown.set, DATA.sets[0]), shown.set.date.slice(0, 10),
+          out.length ? `left out: ${out.join("; ")}` : "nobody left out"].join("; ");
 }
 
 function save(name, kind, text) {
@@ -180,8 +193,8 @@ function save(name, kind, text) {
 }
 
 place("machine").addEventListener("change", (event) => {
-  const there = setOf({machine: event.target.value}).contests.some((one) => one.scene === state.scene);
-  change({machine: event.target.value, scene: there ? state.scene : ""});
+  const machine = event.target.value, set = setOf({machine}), there = set.contests.some((one) => one.scene === state.scene);
+  change({machine, scene: there ? state.scene : "", family: familyIn(set, state.family)});
 });
 place("scene").addEventListener("change", (event) => change({scene: event.target.value, mine: null}));
 place("family").addEventListener("change", (event) =>
@@ -189,7 +202,7 @@ place("family").addEventListener("change", (event) =>
 for (const key of NUMBERS)
   place(key).addEventListener("input", (event) => {
     const value = positive(key, event.target.value);
-    if (key === "n" && !value) return;
+    if (key === "n" && !value) return void event.target.reportValidity();
     change(["n", "fill"].includes(key) ? {...numbers(), family: caseOf(state).family, [key]: value, scene: "", mine: null} : {[key]: value});
   });
 for (const key of BOXES)
@@ -201,12 +214,12 @@ function numbers() {
 }
 
 place("reset").addEventListener("click", () => {
-  place("mine").value = place("mine-said").textContent = "";
-  change({...START, machine: DATA.sets[0].name, family: familiesOf(DATA.sets[0]).includes(START.family) ? START.family : ""});
+  place("mine").value = "";
+  change({...START, machine: DATA.sets[0].name, family: familyIn(DATA.sets[0], START.family)});
 });
 place("link").addEventListener("click", (event) => copy(location.href, event.target));
 place("use").addEventListener("click", () => useText(place("mine").value));
-place("forget").addEventListener("click", () => { place("mine").value = place("mine-said").textContent = ""; change({mine: null}); });
+place("forget").addEventListener("click", () => { place("mine").value = ""; change({mine: null}); });
 place("file").addEventListener("change", (event) => { if (event.target.files[0]) useText(textOf(event.target.files[0])); });
 place("mine").addEventListener("paste", () => setTimeout(() => useText(place("mine").value)));
 for (const kind of ["dragover", "dragleave", "drop"])
@@ -219,10 +232,10 @@ for (const kind of ["dragover", "dragleave", "drop"])
   });
 place("csv").addEventListener("click", () => save("ranking.csv", "text/csv", asCsv()));
 for (const [button, from, name] of PICTURES)
-  place(button).addEventListener("click", () => save(name, "image/svg+xml", standalone(place(from).querySelector("svg"))));
+  place(button).addEventListener("click", () => save(name, "image/svg+xml", standalone(place(from).querySelector("svg"), lineOf(from))));
 place("question").addEventListener("submit", (event) => event.preventDefault());
 DARK.addEventListener("change", () => show());
-window.addEventListener("hashchange", () => { state = readAddress(); show(); });
+window.addEventListener("hashchange", () => change(readAddress()));
 window.addEventListener("resize", () => {  // of the width: a keyboard on the screen changes the height
   clearTimeout(show.later);
   if (innerWidth !== show.width) show.later = setTimeout(show, 150);

@@ -69,25 +69,33 @@ function distance(one, asked) {
 function answer(state) {
   const set = setOf(state), names = chosen(state), asked = caseOf(state);
   const found = {set, asked, names, form: forms(state)[0] ?? null, near: [], predicted: [], features: null, error: null, warnings: []};
+  const told = asked.features?.n > 0 || asked.fill || asked.family && !asked.family.includes("filled");  // by n alone none is the case
   for (const form of forms(state)) {
     const ranked = set.contests.filter((one) => one.form === form && (!asked.family || one.family === asked.family))
       .map((contest) => ({contest, far: contest.scene === asked.scene ? 0 : distance(contest, asked), samples: contest.rows.length}))
       .filter((one) => one.contest.able.some((name) => names.has(name)))
       .sort((a, b) => a.far === b.far ? b.samples - a.samples : a.far - b.far);
     if (!ranked.length) continue;
-    const first = ranked[0], exact = first.far < SAME;
+    const first = ranked[0], exact = first.contest.scene === asked.scene || Boolean(told) && first.far < SAME;
     const other = exact ? null : ranked.find((one) => asked.family ? (one.contest.n - asked.n) * (first.contest.n - asked.n) < 0
                                                                     : one.contest.scene !== first.contest.scene);
     found.form = form;
     found.near = [first, ...(other ? [other] : [])].map((one) => ({contest: one.contest, exact, ranking: rankContest(one.contest, names)}));
     found.features = featuresOf(asked, set);
-    const refused = new Set(found.near.flatMap(({contest}) => contest.lost).filter((one) => one.status === "unsupported").map((one) => one.name));
-    found.predicted = predicted(set, found.features, form, new Set([...names].filter((name) => !refused.has(name))));
+    found.predicted = predicted(set, found.features, form, taking(found, () => false));
     found.warnings = warnings(state, asked, found.features, set.contests.filter((one) => one.form === form));
     break;
   }
-  if (state.error) found.error = answerError(state, set, names, asked);
+  const inOther = (name, {scene}) => set.contests.some((one) => one.scene === scene && one.able.includes(name));
+  if (state.error) found.error = answerError(state, set, asked, taking(found, inOther));  // whose points are of either form
   return found;
+}
+
+// Names without those that do not take what is near in this form of the step, unless they are `excused(name, contest)`.
+function taking({near, names}, excused) {
+  const refused = new Set(near.flatMap(({contest}) => contest.lost.filter(({name, status}) => status === "unsupported" && !excused(name, contest)))
+    .map((one) => one.name));
+  return new Set([...names].filter((name) => !refused.has(name)));
 }
 
 const WITH_SIZE = ["m", "jacobian", "mass", "tangent", "factor", "height", "supernodes", "springs"];  // grow with n, at one density
@@ -160,7 +168,7 @@ function warnings(state, asked, features, contests) {
 }
 
 // Which point reaches an error in the least time, on the judged four-bar nearest to the case.
-function answerError(state, set, names, asked) {
+function answerError(state, set, asked, names) {
   const far = (one) => distance(one, {...asked, features: null});
   const [curve] = set.curves.filter((one) => one.unit === "m").sort((a, b) => far(a) - far(b));
   return curve ? {curve, ranking: rankPoints(curve, pointsOf(state, curve, names))} : null;

@@ -25,16 +25,19 @@ function readScene(text) {
 function readDescribed(found) {
   const warnings = [...list(found.warnings)];
   if (found.singular_start) warnings.push("the scene starts in a singular position");
-  const able = list(found.recommendation).map((one) => one?.implementation), names = DATA.names.map((one) => one.name);
+  const able = list(found.recommendation).map((one) => one?.implementation), form = found.scheme?.take ?? FORMS[0];
+  // Of whom the rule has no times, the recommendation says nothing.
+  const {times} = DATA.sets.find((one) => one.name === found.rule?.set) ?? DATA.sets[0];
+  const unable = able.length ? Object.keys(times).filter((name) => times[name][form] && !able.includes(name)) : [];
   return {scene: found.scene, n: found.variables, fill: 100 * (found.tangent?.fill ?? NaN), features: found.features,
-          form: found.scheme?.take, machine: "", own: [], unable: able.length ? names.filter((name) => !able.includes(name)) : [], warnings};
+          form, machine: "", own: [], unable, warnings};
 }
 
 function readBenchmarks(found) {
   const unable = found.benchmarks.filter((one) => /^unsupported/.test(one?.error_message) && typeof one.name === "string")
     .map((one) => one.name.split("/").slice(0, 2).join("/"));
   const runs = found.benchmarks.filter((one) => typeof one?.name === "string" && one.run_type === "iteration" && !one.error_occurred
-    && one.steps > 0 && one.cpu_time > 0);
+    && one.steps > 0 && one.cpu_time > 0 && !one.name.startsWith("null/null/"));  // the control, which does nothing
   if (!runs.length) throw new Error("no contender was timed in this output of mbs bench");
   const split = (name) => name.split("/"), scene = split(runs[0].name).slice(2).join("/");
   const times = new Map();
@@ -49,17 +52,18 @@ function readBenchmarks(found) {
 
 const formOf = (command) => /--scheme[= ]saddle-point/.test(command ?? "") ? "saddle-point" : undefined;
 
-// The table that `mbs bench` prints, with or without --summary; of several scenes the first.
-function readTable(text) {
-  const head = /^(\S.*): (\d+) variables, \d+ constraints, tangent filled to ([\d.]+) %/m.exec(text);
+// The table that `mbs bench` prints, with or without --summary; of several scenes the first. A summary is as wide as a terminal:
+// what does not fit goes on after four blanks. Its last lines say who was left out, after shares of the time, which look like times.
+function readTable(printed) {
+  const text = printed.replace(/\r?\n {4}(?=\S)/g, " ");
+  const head = /^(\S.*): (\d+) variables, \d+ constraints, tangent filled to ([\d.e+-]+) %/m.exec(text);
   if (!head) throw new Error("this is not what mbs describe --json or mbs bench prints");
   const after = text.slice(head.index + head[0].length), next = after.search(/^\S.*: \d+ variables, /m);
-  const own = [], unable = [];
-  for (const line of (next < 0 ? after : after.slice(0, next)).split("\n")) {
-    const row = /^([\w.+-]+\/[\w.+-]+)\s+(?:own\s+)?([\d.]+(?:e[+-]?\d+)?)\s+[\d.]/.exec(line);
-    if (row) own.push({name: row[1], us: Number(row[2])});
-    unable.push(...(/^([\w.+-]+\/[\w.+-]+)\s+unsupported: /.exec(line) ?? []).slice(1));
-  }
+  const scene = next < 0 ? after : after.slice(0, next), [timed] = scene.split(/^shares of the time/m);
+  const rows = timed.matchAll(/^([\w.+-]+\/[\w.+-]+) +(?:own +)?([\d.]+(?:e[+-]?\d+)?) +[\d.]/gm);
+  const own = [...rows].map(([, name, us]) => ({name, us: Number(us)}));
+  const refused = scene.matchAll(/^([\w.+-]+\/[\w.+-]+) +unsupported: |^ {2}unsupported: .*: (.+?) *$/gm);
+  const unable = [...refused].flatMap(([, name, names]) => name ?? names.split(", "));
   if (!own.length) throw new Error("no contender was timed in this output of mbs bench");
   return {scene: head[1], n: Number(head[2]), fill: Number(head[3]), features: null, form: undefined,
           machine: (/^\w+ build by .{1,200}? on (.{1,200}), BLAS/m.exec(text) ?? [])[1] ?? "", own, unable, warnings: []};

@@ -59,10 +59,11 @@ class Paired {
   }
 
   // Logs, one in each environment, of a variant that both have: through it the contenders of `pair`, of different environments, are compared.
+  // A second instance, which is a control, stands for nobody.
   common(environments, pair) {
     const base = (name) => name.split("+")[0];
     const names = environments.map((environment) => new Map([...this.logs]
-      .filter(([, found]) => [...found.values()].some((one) => one.environment === environment))
+      .filter(([name, found]) => !name.endsWith("+twin") && [...found.values()].some((one) => one.environment === environment))
       .map(([name, found]) => [base(name), found])));
     const shared = [...names[0].keys()].filter((name) => names[1].has(name)).sort(), others = shared.filter((name) => !pair.map(base).includes(name));
     const anchor = shared.includes(DATA.anchor) ? DATA.anchor : others[0];

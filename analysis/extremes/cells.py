@@ -48,7 +48,7 @@ class Extreme:
     kept: tuple = ()          # columns of the trajectory; empty: those of the motion
     # Of trials:
     settings: tuple = FORMS
-    near: float = math.nan    # distance from the change point, m; a light mass, kg; a share of speed
+    near: float = math.nan    # distance from the change point, m; a light mass, kg; a size, m; a share of speed
     harmless: tuple = ()      # outcomes that no motion of it deserves
 
     @property

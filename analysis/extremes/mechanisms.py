@@ -62,6 +62,22 @@ class TwoPendulums(namedtuple("TwoPendulums", "mass"), Motion):
         return _of_rods(self, rod("heavy", "A", "B"), rod("light", "A", "C", self.mass, 0.5))
 
 
+class Beside(namedtuple("Beside", "small"), Motion):
+    """A motion, and a rod of 1 m that swings and has nothing to do with it."""
+    truth, accuracy, shortest = (property(lambda self, name=name: getattr(self.small, name)) for name in ("truth", "accuracy", "shortest"))
+
+    def solutions(self, times):
+        return self.small.solutions(times)
+
+    def clearance(self, time):
+        return self.small.clearance(time)
+
+    def document(self):
+        found = self.small.document()
+        return found | {"rods": [*found["rods"], rod("large", "P", "Q")], "points": [
+            *found["points"], fixed("P", 3, 0), {"name": "Q", "position": [4, 0], "velocity": [0.0, 2.0]}]}
+
+
 @dataclass(frozen=True)
 class Uneven(Chain):
     """One loop with a redundant rod whose second crank is given a speed greater by a share. The least change, weighted with

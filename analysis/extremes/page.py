@@ -1,6 +1,7 @@
 # What the page says: counts, who ends how, what is left out; sentences of each section.
 import math
 
+from analysis.core.gather import gather
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
 from analysis.extremes import battery, verdicts
@@ -17,9 +18,11 @@ def _battery(table):
     runs, extreme = verdicts.judged(table), battery.extreme(table)
     if table.empty:
         return None
+    cells = matrix(extreme)
     return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": verdicts.kinds(runs), "verdicts": verdicts.ALL,
             "lists": {verdict: verdicts.listed(runs, verdict) for verdict in (verdicts.SILENT, verdicts.FALSE)}, "left_out": left_out(table),
-            "nobody": nobody(extreme), "matrix": matrix(extreme), "tried": list(extreme.setting.unique()),
+            "nobody": nobody(extreme), "matrix": cells, "columns": list(gather(  # of settings that are equal in all cells
+                (tuple(row.get(setting) for row in cells.values()), setting) for setting in extreme.setting.unique()).values()),
             "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
             "settings": [(name, len(rows), verdicts.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
 

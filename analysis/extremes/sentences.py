@@ -1,4 +1,5 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
+from analysis.core.gather import gather
 from analysis.core.text import number
 from analysis.extremes import battery, trials, verdicts
 from analysis.extremes.cells import FORMS
@@ -29,10 +30,7 @@ def _battery(table):
     entries = verdicts.listed(runs, verdicts.SILENT)
     text += " Silent wrongs:" * bool(entries) + "".join(f" {one['kind']}, {one['mechanism']}: {one['commands'][0]}." for one in entries[:MOST])
     yield {"anchor": "battery", "text": text + (f" {len(entries) - MOST} more on the page." if len(entries) > MOST else "")}
-    lost = {}
-    for axis, value, _ in nobody(battery.extreme(runs)):
-        lost.setdefault(axis, []).append(value)
-    if lost:
+    if lost := gather((axis, value) for axis, value, _ in nobody(battery.extreme(runs))):
         yield {"anchor": "nobody", "text": "Nobody is right, in any setting tried, at " + "; ".join(
             f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
 

@@ -3,13 +3,14 @@ import math
 import random
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy
 from scipy.optimize import minimize_scalar
 
 from analysis.extremes.cells import FORMS, STEP, Extreme
 from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing, Wheel
-from analysis.extremes.mechanisms import Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
+from analysis.extremes.mechanisms import Beside, Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
 from analysis.extremes.motions import Chain
 from study.core.setting import Setting
 from study.scenes.problems import read_list
@@ -18,6 +19,7 @@ from study.scenes.references import EXTRAPOLATED
 DISTANCES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # from the change point, in lengths of about a link
 STEPS = (1e-2, STEP, 2e-4)                        # s
 MASSES = tuple(10.0**-power for power in range(3, 13))
+SIZES = (1e-1, 1e-2, 1e-3)                        # m, of mechanisms beside a rod of 1 m
 UNEVEN = (1e-9, 1e-6, 1e-3, 1e-2)                 # shares by which speeds disagree
 DRAWN = 4                                         # four-bars whose lengths are drawn by lot
 MORE = ("crank-rocker", "double crank", "offset", "Watt")  # of which two freedoms, and feet that move, are tried too
@@ -25,6 +27,7 @@ LONG = 100.0                                      # s
 HALF = ("half-step", "")
 DRIVEN = tuple(Setting(form.scheme, changes) for changes in ((), (HALF,), (("tangent", "kept"),)) for form in FORMS)
 FREE = (*DRIVEN, *map(Setting, ("rattle", "rattle4", "rattle6", "multistep6")))  # these take no drivers
+LOOSE = tuple(Setting(form.scheme, (("projections", "none"), ("tolerance", "1e-4"))) for form in FORMS)  # as study/advise may name
 PASSAGE, REGULAR = ("wrong-branch",), ("wrong-branch", "diverged", "not-converged")  # what is no outcome of a motion that is right
 STANDARD = ("standard problem", "example or family")
 LINKS = {"A01": 1.0, "A02": 1.0, "A03": 7e-3, "A04": 1.0, "A05": 1.0, "slider-crank": 0.5, "double four-bar": 1.0, "spatial slider-crank": 0.08,
@@ -100,7 +103,7 @@ FAR = {"double crank": four_bar(1.2, 1.1, 1.0, 0.4), "crank-rocker": four_bar(0.
 
 @cache
 def all_trials():
-    return [*_standard(), *_near(), *_passing(), *_worked(), *_uneven(), *_long()]
+    return [*_standard(), *_near(), *_passing(), *_worked(), *_uneven(), *_small(), *_long()]
 
 
 def few(trials, standard, others):
@@ -122,12 +125,12 @@ def _near():
             for rate in (1.0, -2.0):
                 driven = replace(linkage, rate=rate)
                 for step in STEPS:
-                    yield _trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN, near=gap)
+                    yield _trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN + LOOSE, near=gap)
             narrow = name in ("rhombus", "kite", "quick return")  # what follows the crank turns over within this angle
             if gap >= 1e-3 or not narrow:
                 free = replace(linkage, driven=False, finest=gap if narrow else 1.0)
                 for step in STEPS:
-                    yield _trial(f"free {kind}", label, free, step, 3.2, FREE, near=gap)
+                    yield _trial(f"free {kind}", label, free, step, 3.2, FREE + LOOSE, near=gap)
             if name in MORE:
                 wheel = replace(free, followers=(*free.followers, Wheel("W", free.points[-1])))
                 for step in STEPS[:2]:
@@ -168,6 +171,17 @@ def _uneven():
         yield _trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share)
         yield _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share)
         yield _trial("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), STEP, 6.4, DRIVEN, near=share)
+
+
+def _small():
+    """Beside something large, by which they must not be measured."""
+    for size in SIZES:
+        linkages = {"rhombus": four_bar(size, size, size, (1 - 1e-5) * size), "crank-rocker": four_bar(0.39999 * size, size, 0.4 * size, size),
+                    "far": four_bar(0.3 * size, size, 0.8 * size, 0.9 * size)}
+        for (name, linkage), step in product(linkages.items(), STEPS[:2]):
+            yield _trial("small part, driven", f"{name} of {size:g} m", Beside(linkage), step, 6.4, DRIVEN, near=size)
+            if name != "rhombus":
+                yield _trial("small part, free", f"{name} of {size:g} m", Beside(replace(linkage, driven=False)), step, 3.2, FREE, near=size)
 
 
 def _long():

@@ -101,10 +101,10 @@ def held_figure(held):
         for axes in (left, right):
             missing(axes, "too few mechanisms for a rule")
         return figure
-    for scheme, mark in zip(SCHEMES, ("o", "^")):
+    for scheme, mark, colour in zip(SCHEMES, ("o", "^"), ("#0072B2", "#D55E00")):
         some = rows[rows.scheme == scheme]
-        left.plot(some.step_us, some.predicted_us / some.step_us, mark, markersize=5.5, label=scheme, linestyle="none")
-        right.plot(some.variables, 100 * some.loss, mark, markersize=5.5, label=scheme, linestyle="none")
+        left.plot(some.step_us, some.predicted_us / some.step_us, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")
+        right.plot(some.variables, 100 * some.loss, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")
     for bound in (1 / WITHIN, WITHIN):
         left.axhline(bound, color=GREY, linewidth=0.9, linestyle="--")
     number_axis(left.xaxis)

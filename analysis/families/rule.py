@@ -22,7 +22,7 @@ MUCH = 0.30      # a loss
 FAILED = 3.0     # loss of who is of no use there: it disagrees, crashes, ...
 MOST = 3.0       # what a loss counts at most, where candidates are chosen
 UNKNOWN = MOST * (1 + 4 * MOST)  # the cost of who has no loss, where one number chooses
-USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
+COUNTABLE = 2.5e8  # operations of a factorization up to which `mbs describe` counts passes (harness/src/describe/passes.cpp)
 WORK = {"penalty": "flops", "saddle-point": "saddle_flops"}  # of a factorization
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
@@ -84,7 +84,7 @@ def _ratios(data, family, rest):
     """Measured over predicted times of a family left out, with all that have a model."""
     for (scheme, name), found in rest.models.items():
         times = data.us[scheme][name].dropna()
-        times = times[[scene for scene in times.index if data.family[scene] == family and data.usual[scheme][scene]]]
+        times = times[[scene for scene in times.index if data.family[scene] == family]]
         yield from ((family, scheme, name, ratio) for ratio in times / predicted(found, data.features.loc[times.index]))
 
 
@@ -111,10 +111,9 @@ def _held(data, rests, ratios):
             for scene in [one for one in losses.index if data.family[one] == family]:
                 name, us = rest.choice(scheme, data.features.loc[[scene]])
                 low, high = _range(ratios, scheme, name, family)
-                measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
                 yield {"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
                        "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name],
-                       "step_us": measured, "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]}
+                       "step_us": data.us[scheme].loc[scene].get(name, numpy.nan), "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]}
 
 
 def _alone(data):
@@ -142,7 +141,6 @@ class _Rule:
         for scheme in PASSES:  # the penalty form first
             for name in (us := data.us.get(scheme, {})):
                 times = us[name].dropna()
-                times = times[[bool(data.usual[scheme][scene]) for scene in times.index]]
                 if len(times) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
                     features, weights = data.features.loc[times.index], data.weights(times.index)
@@ -205,15 +203,16 @@ class _Data:
         # Operations in % of a dense solver's, as elimination.hpp has them.
         dense = n * m**2 + full_flops(m) + self.features.stiff * (full_flops(n) + n**2 * m)
         self.features["saddle_dense"] = 100 * self.features.saddle_flops / dense.clip(lower=1)
-        self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
+        self.us, self.losses, self.known_by = {}, {}, {}
         shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
         for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):
             us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)}).T
             best = us[[name for name in registry.libraries if name in us]]
             best = best[best.notna().any(axis=1)]
             self.us[scheme] = us.loc[best.index]
-            passes = rows[(rows.status == "ok") & rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
-            self.usual[scheme] = ~(passes > USUAL * self.features.loc[best.index, PASSES[scheme]])
+            # `mbs describe` counts them in the steps that `mbs bench` times, which are not always those that were timed here.
+            passes = rows[(rows.status == "ok") & rows.passes.notna()].groupby("scene").passes.median()
+            self.features[PASSES[scheme]].update(passes[self.features.loc[passes.index, WORK[scheme]] <= COUNTABLE])
             status = rows.pivot(index="scene", columns="implementation", values="status").reindex(index=best.index, columns=best.columns).fillna("")
             self.losses[scheme], self.known_by[scheme] = _losses(best.div(best.min(axis=1), axis=0).sub(1.0), status, shapes)
         self.family = {scene: known.family[scene] for losses in self.losses.values() for scene in losses.index}
@@ -223,7 +222,7 @@ class _Data:
     def without(self, family):
         rest = object.__new__(_Data)
         rest.__dict__ = self.__dict__ | {name: {scheme: rows[[self.family[scene] != family for scene in rows.index]]
-                                                for scheme, rows in getattr(self, name).items()} for name in ("us", "losses", "usual")}
+                                                for scheme, rows in getattr(self, name).items()} for name in ("us", "losses")}
         return rest
 
     def weights(self, scenes):

@@ -46,8 +46,8 @@ def _defaults(rows):
     rows = rows[rows["mean"].notna()].sort_values("mean")
     if rows.empty:
         return []
-    told = lambda row: (f"that of {row['rule']} ({'about ' if row['rough'] else ''}{number(row['mean'])} times the fastest library's time on "
-                        f"average, {number(row['worst'])} at worst)")
+    told = lambda row: (f"that of {row['rule']} ({'at least ' if row['smaller'] > 0 else 'about ' if row['rough'] else ''}{number(row['mean'])} "
+                        f"times the fastest library's time on average, {number(row['worst'])} at worst)")
     return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} scenes, the least costly is "
              f"{told(rows.iloc[0])}, the most costly {told(rows.iloc[-1])}."}]
 

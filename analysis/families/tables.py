@@ -59,7 +59,8 @@ def _winner(timed, cells, names):
     found = timing.rank(timed, agreed(cells, names))
     if found is None:
         lost = [one for name, one in cells.items() if name in names and one["status"] != "ok"]
-        said = Counter(f"{one['status']}: {one['reason']}" for one in lost).most_common(1)  # of most
+        out_of_time = [one for one in lost if one["status"] == "dropped"]  # who might have won
+        said = Counter(f"{one['status']}: {one['reason']}" for one in out_of_time or lost).most_common(1)  # of most
         return {"winner": "", "reason": said[0][0] if said else "nobody takes part", "record": lost[0]["record"] if lost else ""}
     both = [name for name in (found.winner, found.second) if name]
     within = timing.within(timed, found.second, found.winner) if found.second else ()

@@ -1,16 +1,16 @@
 # What a step takes, from numbers of a scene: passes times a sum of products of features, with coefficients that are not negative.
 #
-# Terms are what a pass does: something for each variable, constraint entry, non-zero of the matrix and of its factor, and the
-# operations of the factorization. Passes are the same for all: when times are compared only counts decide. Coefficients are those of
+# Terms are what a pass does: something for each variable, constraint entry, spring, non-zero of the matrix and of its factor, and
+# the operations of the factorization. Passes are the same for all: when times are compared only counts decide. Coefficients are those of
 # the least squares of log(predicted/measured), of relative errors made so by weights.
 import numpy
 
 PASSES = {"penalty": "passes", "saddle-point": "saddle_passes"}
 OF_A_PASS = {  # by form and whether the implementation's matrices are dense
-    ("penalty", False): "1 n jacobian tangent factor flops supernodes",
-    ("penalty", True): "1 n jacobian n*n n*n*n",
-    ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
-    ("saddle-point", True): "1 n jacobian n*n n*m m*m m*m*m n*n*m n*m*m stiff*n*m"}
+    ("penalty", False): "1 n jacobian springs tangent factor flops supernodes",
+    ("penalty", True): "1 n jacobian springs n*n n*n*n",
+    ("saddle-point", False): "1 n jacobian springs saddle_factor saddle_flops",
+    ("saddle-point", True): "1 n jacobian springs n*n n*m m*m m*m*m n*n*m n*m*m stiff*n*m"}
 TERMS = {(form, dense): tuple(f"{PASSES[form]}*{term}" for term in terms.split()) for (form, dense), terms in OF_A_PASS.items()}
 # Where springs are, dense ones factorize T₀ in the saddle-point form as they do T in the penalty form, of which far more are measured.
 # What they solve with its factor costs n m more; that this one term is enough was chosen with a look at families left out.

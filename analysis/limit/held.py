@@ -1,14 +1,15 @@
 # What code without a library is held to: bounds, and the worst that was measured for each.
 #
 # Of all such code the fastest counts, size by size and scene by scene. A ratio is held or not held where its whole interval
-# says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value. Where not all cases were measured nothing is held as a whole.
+# says so, else open; an exponent too, by the interval of its fit; a set-up and a sweep's gain, which have none, by their values. The latter is of
+# `mbs sweep`, whoever simulates its lanes. Where not all cases were measured nothing is held as a whole.
 import numpy
 
 from analysis.core.timing import power_law
 
 AHEAD_SIZES, NEAR_SIZES = (22, 50, 82, 160, 1000, 4000), (22, 82, 1000)  # n
 AHEAD, AHEAD_PLANAR, AHEAD_SPATIAL = 3.0, 2.0, 1.5
-NEAR_LIMIT, BEHIND_FILLED, GAIN, EXPONENT, SET_UP_S = 1.5, 1.1, 4.0, 1.05, 0.5
+NEAR_LIMIT, BEHIND_FILLED, GAIN, TWO_JOBS, EXPONENT, SET_UP_S = 1.5, 1.1, 4.0, 1.8, 1.05, 0.5
 GROWTH_FROM, GROWTH_TO = 100, 20000  # n
 HELD, PARTLY, NOT_HELD, OPEN, NOT_MEASURED = "held", "held where measured", "not held", "open", "not measured"
 LEAST, MOST = "≥", "≤"
@@ -36,7 +37,8 @@ def must_hold(own, tables):
         rows = batches[(batches.sets == sets) & (batches.status != "unsupported")]
         found.append(_worst(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters", LEAST, GAIN,
                             _fastest(rows, "scene", "step_us", True), "gain", rows.scene.nunique()))
-    return found
+    sweeps = tables["sweeps"]
+    return [*found, _worst("lanes a second of a sweep by two jobs ÷ by one", LEAST, TWO_JOBS, sweeps[sweeps.jobs == 2], "gain", sweeps.scene.nunique())]
 
 
 def _lead(where, bound, rows, cases):

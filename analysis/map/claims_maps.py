@@ -20,7 +20,7 @@ def standing(results):
 
 
 def over_fill(results):
-    """F5. Rule: best dense, on any pair, ÷ system above 1 at every fill."""
+    """F5. Rule: best dense, on any pair that was timed there, ÷ system above 1 at every fill."""
     samples, dense = results.samples(), paper.dense(results)
     samples = samples[samples.implementation.isin(standing(results))]
     filled = samples[samples.fill_asked.notna()].groupby("variables").scene.nunique()
@@ -38,12 +38,13 @@ def over_fill(results):
             text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
             yield unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", Rule(low=1))
         else:
-            yield judged(head, cases, Rule(low=1), f"n = {size:g}, best dense ÷ {', '.join(names)}")
+            yield judged(head, cases, Rule(low=1), f"n = {size:g}, {', '.join(dict.fromkeys(one.slow for one in found if one))} ÷ {', '.join(names)}")
 
 
 def regions(results):
     """F6, F7. Rules: the system wins every cell of its region, ranked among the stand-ins of the paper's systems; a cell that one of several may win
-    is undecided, one whose winner stands for two systems tells nothing of either. F6 also: no cell at all is won by a dense version, on any pair."""
+    is undecided, one whose winner stands for two systems tells nothing of either. Where some refute it and none confirms it is refuted.
+    F6 also: no cell at all is won by a dense version, on any pair that was timed there."""
     asked = {(one["variables"], fill) for one in results.view.settings["columns"] for fill in one["fills"]}
     cells = [cell for cell in map_cells(results, standing(results))  # others crowd where winners change
              if cell.ranking and (cell.variables, cell.fill_asked or "natural") in asked]
@@ -74,7 +75,7 @@ def _region(results, figure, claim, cells, system):
     told = gather((_cell(cell, names, system and paper.shared(results, system)), _place(cell)) for cell in cells)
     winners = gather((cell.ranking.winner if cell.decided else "undecided", _place(cell)) for cell in cells)
     listed = "; ".join(f"{name}: {', '.join(found)}" for name, found in winners.items())
-    return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
+    return row(head, REFUTED if REFUTED in told and CONFIRMED not in told else summed(told), by_place(told) if len(told) > 1 else "", rule,
                f"Winners among the paper's systems: {listed}.") | {
         "ours": f"{len(told.get(CONFIRMED, []))} of {len(cells)} cells", "where": f"{', '.join(map(_place, cells))}: {', '.join(names)}",
         "record": " ".join(rows.record[rows.implementation == cell.ranking.winner].iloc[0] for cell in cells for rows in [results.rows(cell.scene)])}

@@ -1,5 +1,5 @@
 # All figures of the map: of the fastest over size and fill, the paper's Figures 6 and 7, for libraries and for all; Figure 4, sparse
-# solvers of libraries over problem size, as ratios to the one of least time at each size, with intervals.
+# solvers of libraries over problem size, as ratios to the one of least time at each size, with intervals; Figure 5, time of a pass over fill.
 import re
 from collections import Counter
 
@@ -20,15 +20,17 @@ BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
 NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
 OUTCOMES = {"decided": "wins", "equivalent": "as fast in", "open": "may be in"}
 PAPER_END = 160  # variables, right end of the paper's axis
+FIGURE_5 = 100   # variables of the paper's
 LEADERS = 1.5    # ratio at which the upper panel ends
 DODGE = 0.6      # width over which the contenders of a size are spread
 
 
 def draw(tables, view):
     results, look = of(tables, view), Look(view.registry)
-    return {"f7_map": fastest(results, look, "Figure 7: fastest library over size and fill", results.layer("libraries")),
-            "map_all": fastest(results, look, "Fastest of all, code of our own included", results.layer("all")),
-            "f4_sparse_solvers": sparse(results, look)}
+    pair = "".join(results.samples().blas.mode()[:1]) or "none"  # that of most: other pairs are in no layer
+    return {"f7_map": fastest(results, look, f"Figure 7: fastest library over size and fill; BLAS pair: {pair}", results.layer("libraries")),
+            "map_all": fastest(results, look, f"Fastest of all, code of our own included; BLAS pair: {pair}", results.layer("all")),
+            "f4_sparse_solvers": sparse(results, look), "f5_fill": over_fill(results, look)}
 
 
 def fastest(results, look, title, names, letters=13, line=2.1):
@@ -185,4 +187,35 @@ def sparse(results, look):
              f"open: not shown who of these is fastest; as fast: several are, to {100 * EQUIVALENT - 100:.0f} %; who is not "
              "there was not timed (reasons: table of failures)")
     figure.text(figure.subplotpars.left, 0.03, notes, fontsize=7.5, color=GREY, va="top", linespacing=1.35)
+    return figure
+
+
+def over_fill(results, look):
+    samples = results.samples().assign(us=lambda rows: rows.step_us * rows.steps / rows.passes)
+    fills = samples.groupby("variables").fill_percent.nunique()
+    size = min(fills.index[fills > 2], key=lambda one: abs(one - FIGURE_5), default=None)
+    figure, axes = plt.subplots(figsize=(8.4, 5.4))
+    if size is None:
+        missing(axes, "no size was timed at three fills or more")
+        return figure
+    samples = samples[samples.variables == size]
+    scenes = samples.groupby("fill_percent").scene.first()
+    us = samples.groupby(["implementation", "fill_percent"]).us.agg(["median", "min", "max"])
+    names = [name for name in paper.sparse(results, others=True) if name in us.index]
+    for name in names:
+        rows = us.loc[name]
+        axes.plot(rows.index, rows["median"], label=name, **look.line(name))
+        axes.vlines(rows.index, rows["min"], rows["max"], color=look.colour(name), linewidth=2.2, alpha=0.6)
+    hybrid = [name for name in results.layer("libraries") if name.startswith("hybrid_dense/")]
+    for who, those, style in (("dense", paper.dense(results), "-"), ("sparse evaluation, dense solver", hybrid, "--")):
+        led = {fill: name for fill, scene in scenes.items() if (name := results.fastest(scene, those))}
+        names.append(f"{who}, the fastest: {', '.join(dict.fromkeys(led.values()))}")
+        axes.plot(list(led), [us["median"][name, fill] for fill, name in led.items()], style, color="black", linewidth=2.2, zorder=1.5, label=names[-1])
+    axes.set(title=f"Figure 5: time of a pass over fill, n = {size:g}", xlabel="non-zeros of the tangent, % of n²", ylabel="time of a pass, µs")
+    axes.set_yscale("log")
+    number_axis(axes.yaxis)
+    axes.grid(True, which="major")
+    legend(axes, order=names.index)
+    figure.text(figure.subplotpars.left, 0.0, "median of processes; bars: least to largest. Who is not there was not timed (reasons: table of failures)",
+                fontsize=7.5, color=GREY, va="top")
     return figure

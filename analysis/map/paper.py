@@ -14,13 +14,13 @@ TABLE2 = {"rank_k_update": (2528.2, 9.4, 269), "matrix_addition": (140.9, 1.9, 7
 OPERATIONS = {"rank_k_update": "rank-k update", "matrix_addition": "matrix addition", "jacobian_evaluation": "Jacobian evaluation"}
 NOT_OPTIMISED = "ublas_sparse"  # folder
 
-# Who stands for the paper's systems; a folder means all its variants. Whoever is not named here, such as code of our
-# own and newcomers, plays no part in a claim.
+# Who stands for the paper's systems. Whoever is not named here plays no part in a claim: code of our own, newcomers,
+# further variants of the same folders.
 SYSTEMS = {"KLU": ("csc_klu/refactor",),
-           "CHOLMOD": ("csc_cholmod",),
-           "WSMP": ("csc_mumps", "csc_cholmod/supernodal"),
+           "CHOLMOD": ("csc_cholmod/simplicial", "csc_cholmod/supernodal"),
+           "WSMP": ("csc_mumps/spd", "csc_cholmod/supernodal"),
            "SuperLU": ("eigen_sparse/superlu",),
-           "optimised dense": ("eigen_dense", "armadillo_dense")}
+           "optimised dense": ("eigen_dense/llt", "armadillo_dense/potrf")}
 OTHERS = ("csc_klu", "csc_ldl", "csc_umfpack", "eigen_sparse")  # sparse folders of libraries besides, in figures alone
 FULL_PIVOTING = "csc_klu/factor"
 SUBJECTS = {"T1": "time by phase", "T2": "symbolic preprocessing", "F2": "dense versions", "F4": "sparse solvers",

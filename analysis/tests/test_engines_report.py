@@ -139,8 +139,8 @@ def test_a_sentence_on_andrews_mechanism():
     motion = numpy.moveaxis(andrews.positions(numpy.array([0.0, 0.03])), 2, 0)  # time, point, axis
     table = made(*(record for make, arguments, more in runs for record in [known(make(*arguments, **more), motion)]), *rounds(runs))
     [text] = sentences.of_andrews(table["equal_error"])
-    assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.001 to 10⁻⁶ m, takes 4 to 9 times as long as our code "
-                    "for any scene; 2 times as long as the fastest library, which does not reach 1 of 2 of them.")
+    assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.001 to 10⁻⁶ m, takes 4 to 9 times as long as our "
+                    "general code; 2 times as long as the fastest library, which does not reach 1 of 2 of them.")
 
 
 def known(record, motion):

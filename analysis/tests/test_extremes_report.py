@@ -160,6 +160,16 @@ def test_the_matrix_shows_the_worst_and_who_is_unlike():
     assert page.matrix(table)["step", "ok"]["penalty"][1] == -3  # none is shown below that of the truth
 
 
+def test_settings_that_are_equal_in_all_cells_share_a_column():
+    table = small()
+    more = table[(table.setting == "penalty") & (table.axis == "loops")].assign(setting="rattle")  # not tried elsewhere
+    assert page._battery(pandas.concat([table, more]))["columns"] == [["penalty", "saddle-point"], ["rattle"]]
+    table.loc[table.index[0], ["verdict", "true_error"]] = verdicts.SILENT, 0.3
+    assert page._battery(table)["columns"] == [["penalty"], ["saddle-point"]]
+    found = made(run("ok"), run("ok", role="saddle-point"), run("ok", 0.02, role="rattle4"))
+    assert "<span>penalty<br>saddle-point</span></th><th><span>rattle4</span>" in render(found)
+
+
 def test_what_was_left_out_is_told():
     table = small()
     table["reason"] = table.reason.mask(table.status == "excluded", "dense implementations run up to 200 loops")

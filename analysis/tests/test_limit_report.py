@@ -218,6 +218,13 @@ def test_sweeps_are_projected_from_the_lanes_that_were_run():
     assert made(swept(1, 1.0, 1.0, "dropped"))["sweeps"].reason.tolist() == ["why"]
 
 
+@pytest.mark.parametrize("two, status, gain, verdict", [(1.0, "done", 2.0, "held"), (1.2, "done", 2 / 1.2, "not held"),
+                                                        (1.0, "dropped", numpy.nan, "not measured")])
+def test_two_jobs_are_held_to_a_gain(two, status, gain, verdict):
+    row = said(made(swept(1, 2.0, two, status))).loc["lanes a second of a sweep by two jobs ÷ by one"]
+    assert (row.verdict, row.cases, row.measured) == (verdict, 1, status == "done") and row.worst == pytest.approx(gain, nan_ok=True)
+
+
 def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
     rows = figures.everyone(made(*(bench("size", f"four-bar:{size}", number, limit_limit=1.0, one_a=3.0,
                                          one_b=2.0 if size == 10 else "slower: much", two_c=5.0, own_x=1.5, own_y=1.2)

@@ -7,9 +7,9 @@ import pandas
 import pytest
 
 from analysis.core import records, schema
-from analysis.core.files import write_json
+from analysis.core.files import ROOT, write_json
 from analysis.core.records import Record
-from analysis.core.style import Look
+from analysis.core.style import DENSE, SPARSE, Look
 from analysis.core.timing import differing
 from analysis.map import figures, page, sentences, summary, tables
 from analysis.map.cells import map_cells, table
@@ -156,6 +156,11 @@ def test_no_winner_is_drawn_in_grey():
     names = [f"f{place}/x" for place in range(10)]
     look = Look(registry(sparse=names))
     assert all(max(rgb) - min(rgb) > 25 for rgb in ([int(look.colour(name)[at:at + 2], 16) for at in (1, 3, 5)] for name in names))
+
+
+def test_each_folder_has_a_colour_of_its_own():
+    dense = [".dense = true" in path.read_text(encoding="utf-8") for path in (ROOT / "implementations").glob("*/implementation.cpp")]
+    assert sum(dense) <= len(set(DENSE)) and len(dense) - sum(dense) <= len(set(SPARSE)), "analysis/core/style.py needs another colour"
 
 
 @pytest.mark.parametrize("letters, lines", [(30, ["csc_cholmod/supernodal"]), (13, ["csc_cholmod/", "supernodal"]), (9, ["csc_", "cholmod/", "supernodal"])])

@@ -226,7 +226,8 @@ def test_one_disturbed_size_does_not_decide():
 def test_over_fill_names_the_fill_where_dense_is_faster():
     rows = [row for fill, sparse in ((None, 1), (0.2, 2), (0.5, 3), (1.0, 5))
             for row in steady(SIMPLICIAL, 100, sparse, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
-    found = [*over_fill(load(rows))]
+    found = [*over_fill(load(rows + steady(f"{POTRF}+reference", 100, 4)))]  # a pair that no filled scene has
+    assert found[0]["where"].endswith(f"n = 100, {POTRF} ÷ {SIMPLICIAL}")
     assert outcome(found, "CHOLMOD") == (MIXED, "0.8 to 4×") and found[0]["reason"] == "confirmed at 5 %, 20 %, 50 %; refuted at 100 %"
     assert outcome(found, "WSMP")[0] == UNMEASURED
 
@@ -253,6 +254,17 @@ def test_regions_are_judged_cell_by_cell():
     dense = next(row for row in found if "dense wins nowhere" in row["claim"])
     assert (dense["ours"], dense["verdict"]) == ("6 of 8 cells", UNDECIDED)
     assert outcome(found, "above 900")[0] == UNMEASURED
+
+
+def test_a_region_that_some_cells_refute_and_none_confirms_is_refuted():
+    rows = []
+    for size, who in ((10, POTRF), (22, SPD), (50, KLU), (82, SUPERNODAL)):  # at 22 open, at 82 of two systems
+        rows += [row for name in (POTRF, KLU, SPD, SUPERNODAL) for row in cell(name, size, *(3 * [1 if name == who else 2]), fill=0.75)]
+    rows = [row | {"step_us": time, "samples_us": str(time)} if row["variables"] == 22 and row["implementation"] == POTRF else row
+            for row in rows for time in [(3, 0.5, 1)[row["process"] - 1]]]
+    row = next(row for row in regions(load(rows)) if "WSMP wins at high" in row["claim"])
+    assert (row["verdict"], row["ours"]) == (REFUTED, "0 of 4 cells")
+    assert row["reason"] == "refuted at n = 10 and 75 %, 50 and 75 %; undecided at n = 22 and 75 %; not comparable at n = 82 and 75 %"
 
 
 def test_a_region_half_of_which_is_lost_is_mixed():

@@ -6,7 +6,7 @@ import pandas
 import pytest
 
 from analysis.core.records import Record
-from analysis.core.registry import ANCHOR
+from analysis.core.registry import ANCHOR, TWIN
 from analysis.core.timing import counted, median, power_law, rank, ratio
 from analysis.core import controls, timing
 from analysis.core.controls import disturbance, told
@@ -56,6 +56,8 @@ def test_who_depends_on_the_environment_is_not_what_two_are_compared_through():
     assert ratio(table, "a", "a+two").value == pytest.approx(2.0)
     assert ratio(table, "b", "a+two").value == pytest.approx(4.0)
     assert math.isnan(ratio(table[~table.implementation.str.startswith((ANCHOR, "b"))], "a", "a+two").value)
+    twin = pandas.DataFrame(rows(ANCHOR + TWIN, {101: (1.0,)}, "one"))  # a control: in processes of its own
+    assert ratio(pandas.concat([table, twin]), "a", "a+two").value == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize("processes", [5, 9])  # quick, full
@@ -66,6 +68,16 @@ def test_the_interval_covers_the_truth_as_often_as_it_says(processes):
         found = ratio(table, "a", "b")
         covered += found.low <= 1.2 <= found.high
     assert 0.91 <= covered / 300 <= 0.99
+
+
+def test_of_two_that_are_equal_one_in_twenty_is_a_false_winner_at_most():
+    """The winner is chosen from the same samples: by a one-sided chance it would be one in ten."""
+    random, found = numpy.random.default_rng(7), []
+    for _ in range(400):
+        table = pandas.DataFrame([row for name in "ab" for row in rows(name, noisy(random, 1.0))])
+        margin = rank(table).ratios
+        found += timing.holm([{"chance": max(one.chance for name, one in margin.items() if one.value > 1), "decided": True, "holm": False}])
+    assert 0.025 <= sum(row["holm"] for row in found) / len(found) <= 0.08
 
 
 def in_layouts(random, level, layouts, each, between, inside):

@@ -62,7 +62,10 @@ void print_rung(const RungReport& report) {
       fmt::print("{}{}{}\n", found.detail.empty() ? "" : "; ", found.detail,
                  found.row.starts_with("row ") ? " (the largest difference; rows and columns count from 0)" : "");
     }
-    if (!report.equation.empty()) fmt::print("    {} of paper/README.md\n", report.equation);
+    if (!report.equation.empty()) {
+      fmt::print("    {}{}\n", report.equation,
+                 report.equation.starts_with("paper/") ? "" : " of paper/README.md");
+    }
     if (!report.mistakes.empty()) fmt::print("    the usual mistakes:\n");
     for (const std::string& mistake : report.mistakes) fmt::print("    - {}\n", mistake);
     if (!report.command.empty()) fmt::print("    more: build/{}\n", report.command);
@@ -172,7 +175,8 @@ void add_check_command(CLI::App& app, int& status) {
       app.add_subcommand("check", "check that implementations agree with the reference");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("scenes", options->scenes,
-                      "scenes (default: four-bar:1 four-bar:10 four-bar:10,fill=0.6 four-bar:40)");
+                      "scenes (default: four-bar:1 four-bar:10 four-bar:10,fill=0.6 four-bar:40 "
+                      "chain:10 ladder:10)");
   command->add_option("--implementation", options->implementations,
                       "folder or folder/variant, several by commas or repeated (default: all but what "
                       "was tried)")
@@ -196,7 +200,8 @@ void add_check_command(CLI::App& app, int& status) {
   }
   command->callback([options, &status] {
     if (options->scenes.empty()) {
-      options->scenes = {"four-bar:1", "four-bar:10", "four-bar:10,fill=0.6", "four-bar:40"};
+      options->scenes = {"four-bar:1",  "four-bar:10", "four-bar:10,fill=0.6",
+                         "four-bar:40", "chain:10",    "ladder:10"};
     }
     status = check(*options);
   });

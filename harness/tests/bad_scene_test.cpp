@@ -83,7 +83,8 @@ TEST(BadScene, WrongShapes) {
       {pendulum("\"name\": \"B\"", "\"name\": \"A\""),
        {"points[1].name: found \"A\"", "points[0]"}},
   });
-  for (const char* name : {"", "a,b", "a\\nb", "a\\\"b", " a", "a ", "\\u0000", "\\t", "'"}) {
+  for (const char* name :
+       {"", "a,b", "a\\nb", "a\\\"b", " a", "a ", "\\u0000", "\\t", "'", "+a", "-a", "@a"}) {
     expect_errors({{pendulum("\"name\": \"B\"", std::string("\"name\": \"") + name + '"'),
                     {"points[1].name", "a name without comma"}}});
   }
@@ -263,7 +264,8 @@ TEST(BadScene, NothingTurnsADirectionOfNoLength) {
         R"("torque_laws": [)" + law + R"("by_rate": {"rates": [0, 1], "torques": [0, 1]}}])",
         std::string(R"("springs": [{"between": ["O", "P"]}, {"between": ["X", "P"]}],
                       "torques": [{"direction": ["P", "Q"], "torque": 1}])")}) {
-    expect_errors({{scene + element + "}", {"[0]: found a direction between points", "same place"}}});
+    expect_errors(
+        {{scene + element + "}", {"[0]: found a direction between points", "same place"}}});
   }
 }
 

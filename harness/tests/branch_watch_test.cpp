@@ -295,5 +295,30 @@ TEST(BranchWatch, DoesNotTakeTheOtherAssemblyForTheSameWhereTheyAreClose) {
   }
 }
 
+TEST(BranchWatch, SeesASmallMechanismJumpBesideALargeOne) {
+  // A rhombus of 1 mm, driven across its change point; a rod of 1 m swings by itself.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "D", "position": [9.9999e-4, 0], "fixed": true},
+      {"name": "B", "position": [5.40302e-4, 8.41471e-4]},
+      {"name": "C", "position": [1.540302e-3, 8.41471e-4]},
+      {"name": "P", "position": [3, 0], "fixed": true},
+      {"name": "Q", "position": [4, 0], "velocity": [0, 2]}],
+      "rods": [{"name": "crank", "between": ["A", "B"], "mass": 1, "length": 1e-3},
+               {"name": "coupler", "between": ["B", "C"], "mass": 1, "length": 1e-3},
+               {"name": "rocker", "between": ["D", "C"], "mass": 1, "length": 1e-3},
+               {"name": "rod", "between": ["P", "Q"], "mass": 1}],
+      "constraints": [{"name": "drive", "type": "angle", "first": ["A", "X"],
+                       "second": ["A", "B"], "value": {"polynomial": [1, 1]}}]})"),
+                               "test");
+  ASSERT_EQ(judged_length(scene.model), 1.0);
+  RunSettings settings = test::automatic_settings(scene, 6.4);
+  settings.step.scheme = Scheme::saddle_point;
+  const RunSummary summary = run(scene, test::reference(), settings);
+  EXPECT_EQ(summary.status, RunStatus::wrong_branch) << summary.reason;
+  EXPECT_NE(summary.reason.find("rocker"), std::string::npos) << summary.reason;
+}
+
 }  // namespace
 }  // namespace mbs

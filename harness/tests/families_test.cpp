@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -66,6 +68,46 @@ class Start {
 /// Angular acceleration of a pendulum of one rod, or of what is in closed form the same.
 double swinging(double lean, double moment, double inertia) {
   return -kG * moment * std::sin(lean) / inertia;
+}
+
+/// One of two bodies alike, as the first of them begins: hinged at the origin.
+struct Limb {
+  double mass = 0.0;     // kg
+  Vector3 centre{};      // of its mass, m
+  double inertia = 0.0;  // about the origin, kg m^2
+  Vector3 hinge{};       // to the other, m
+};
+
+/// Points of the first and of the second of two limbs that begin as one body turning at w. With A
+/// and B the two angular accelerations, the hinge h has A x h - w^2 h; to that the second's centre,
+/// c from there, adds B x c - w^2 c. So the moments about both hinges are, with I of a limb:
+///   (I + m h.h) A + m h.c B = -m g (c_x + h_x) + m w^2 (h x c)
+///         m h.c A +     I B = -m g c_x         - m w^2 (h x c)
+void expect_double_pendulum(nlohmann::json document, const Limb& limb,
+                            const std::vector<std::string>& first,
+                            const std::vector<std::string>& second) {
+  constexpr double kRate = 2.0;  // w, rad/s
+  for (nlohmann::json& point : document["points"]) {
+    if (point.contains("fixed")) continue;
+    const double x = point["position"][0], y = point["position"][1];
+    point["velocity"] = {-kRate * y, kRate * x};
+  }
+  const Start start(scene_of(document, "changed"));
+  const Vector3 c = limb.centre, h = limb.hinge;
+  const double across = limb.mass * kRate * kRate * cross(h, c)[2];
+  const double whole = limb.inertia + limb.mass * dot(h, h), both = limb.mass * dot(h, c);
+  const double at_origin = -kG * limb.mass * (c[0] + h[0]) + across;
+  const double at_hinge = -kG * limb.mass * c[0] - across;
+  const double determinant = whole * limb.inertia - both * both;
+  const double A = (limb.inertia * at_origin - both * at_hinge) / determinant;
+  const double B = (whole * at_hinge - both * at_origin) / determinant;
+  const auto turning = [](double angular, const Vector3& r) {
+    return cross({0.0, 0.0, angular}, r) - kRate * kRate * r;
+  };
+  for (const std::string& name : first) start.expect(name, turning(A, place(start.scene, name)));
+  for (const std::string& name : second) {
+    start.expect(name, turning(A, h) + turning(B, place(start.scene, name) - h));
+  }
 }
 
 RunSummary simulate(const Scene& scene, double duration, const Observer& observer = {}) {
@@ -248,19 +290,34 @@ TEST(Families, ClothHangsAtRestAndMovesAlikeOnBothSides) {
   for (const double a : straight.state.a) EXPECT_NEAR(a, 0.0, 1e-8);
 }
 
+/// Of rods of 4 kg/m.
+Limb lattice(const Scene& boom, const std::string& hinge) {
+  Limb limb;
+  for (const Elements::Rod& rod : boom.elements.rods) {
+    const Vector3 a = boom.model.points()[static_cast<std::size_t>(rod.a)].position;
+    const Vector3 b = boom.model.points()[static_cast<std::size_t>(rod.b)].position;
+    const double mass = 4.0 * norm(a - b);
+    limb.mass += mass;
+    limb.centre = limb.centre + (mass / 2.0) * (a + b);
+    limb.inertia += mass * (dot(a, a) + dot(a, b) + dot(b, b)) / 3.0;
+  }
+  limb.centre = (1.0 / limb.mass) * limb.centre;
+  limb.hinge = place(boom, hinge);
+  return limb;
+}
+
 TEST(Families, TrussTurnsAsOneBody) {
   const Start boom("truss:1,bays=7");
-  double moment = 0.0, inertia = 0.0;  // of rods of 4 kg/m
-  for (const Elements::Rod& rod : boom.scene.elements.rods) {
-    const Vector3 a = boom.scene.model.points()[static_cast<std::size_t>(rod.a)].position;
-    const Vector3 b = boom.scene.model.points()[static_cast<std::size_t>(rod.b)].position;
-    const double mass = 4.0 * norm(a - b);
-    moment += mass * (a[0] + b[0]) / 2.0;
-    inertia += mass * (dot(a, a) + dot(a, b) + dot(b, b)) / 3.0;
-  }
+  const Limb one = lattice(boom.scene, "A7");
   for (const char* name : {"B0_0", "A3", "A7", "B0_7"}) {
-    boom.expect_turning(name, -kG * moment / inertia);
+    boom.expect_turning(name, -kG * one.mass * one.centre[0] / one.inertia);
   }
+}
+
+TEST(Families, TwoLatticesAreADoublePendulum) {
+  expect_double_pendulum(load_document("truss:2,bays=3"),
+                         lattice(load_scene("truss:1,bays=3"), "A3"), {"A2", "A3", "B0_0", "B0_3"},
+                         {"B1_0", "A4", "A6", "B1_3"});
 }
 
 TEST(Families, ScissorsHaveOneFreedom) {
@@ -303,25 +360,158 @@ TEST(Families, OneBodyIsACompoundPendulum) {
   EXPECT_NEAR(turning("bodies:1,dimension=3"), planar, 1e-8);
 }
 
+TEST(Families, TwoBodiesAreADoublePendulum) {
+  const Vector3 along{std::sin(0.2), -std::cos(0.2), 0.0},
+      across{std::cos(0.2), std::sin(0.2), 0.0};
+  expect_double_pendulum(load_document("bodies:2"),
+                         {.mass = 2.0,
+                          .centre = 0.5 * along + 0.05 * across,
+                          .inertia = 0.2 + 2.0 * (0.5 * 0.5 + 0.05 * 0.05),
+                          .hinge = along},
+                         {"J1"}, {"J2"});
+}
+
+/// The first turns about z, the second on it about `a`; 1 rad/s about one of them moves centres at
+/// v_j. From rest Lagrange's equations are sum_k H_jk angular_k = -m g (sum of v_j)_y. H_jk has
+/// m v_j.v_k of each body, and its 0.2 kg m^2 where both turn it about one axis.
+TEST(Families, TwoBodiesInSpaceTurnAboutAxesAtARightAngle) {
+  const Vector3 along{std::sin(0.2), -std::cos(0.2), 0.0}, z{0.0, 0.0, 1.0}, a = cross(z, along);
+  const Vector3 first = cross(z, 0.5 * along + 0.05 * a + 0.03 * z);
+  const Vector3 on_it = 0.5 * along + 0.05 * cross(a, along) + 0.03 * a;  // from J1 to the centre
+  const Vector3 carried = cross(z, along + on_it), second = cross(a, on_it);
+  const double whole = 0.2 + 0.2 + 2.0 * (dot(first, first) + dot(carried, carried));
+  const double both = 2.0 * dot(carried, second), own = 0.2 + 2.0 * dot(second, second);
+  const double at_z = -kG * 2.0 * (first[1] + carried[1]), at_a = -kG * 2.0 * second[1];
+  const double determinant = whole * own - both * both;
+  const double A = (own * at_z - both * at_a) / determinant;
+  const double B = (whole * at_a - both * at_z) / determinant;
+  const Start arm("bodies:2,dimension=3");
+  arm.expect("J1", A * cross(z, along));
+  arm.expect("J2", (2.0 * A) * cross(z, along) + B * cross(a, along));
+}
+
+/// Of the road under an axle at the start.
+struct RoadUnder {
+  double height = 0.0, rate = 0.0;  // m, m/s
+};
+RoadUnder road_under(int axle) {
+  const double phase = -2.0 * std::numbers::pi * 1.5 * axle / 10.0;
+  return {0.01 * std::sin(phase), 0.01 * 2.0 * std::numbers::pi * std::cos(phase)};
+}
+
 TEST(Families, VehicleStandsUntilTheRoadMoves) {
   const Start vehicle("vehicle:5");
   for (int i = 0; i < 5; ++i) {
     const std::string number = std::to_string(i);
-    const double phase = -2.0 * std::numbers::pi * 1.5 * i / 10.0;
-    const double height = 0.01 * std::sin(phase);
-    const double rate = 0.01 * 2.0 * std::numbers::pi * std::cos(phase);
+    const auto [height, rate] = road_under(i);
     vehicle.expect("hub" + number, {0.0, (400e3 * height + 2e3 * rate) / 400.0, 0.0});
     vehicle.expect("mount" + number, {});
   }
 }
 
+/// Hubs move, the chassis rests, and springs are 2 cm longer than the suspensions. Arms are level:
+/// a hub turns about its pivot, and its arm passes no vertical force on. All pivots are at one
+/// height and one keeps its x: so the chassis pitches about a point there, 0.3 m below its centre.
+TEST(Families, VehicleGoesByItsSpringsDampersAndArms) {
+  constexpr std::array<double, 3> kUp{0.3, -0.1, 0.2};  // of the hubs, m/s
+  nlohmann::json document = load_document("vehicle:3");
+  for (nlohmann::json& spring : document["springs"]) {
+    const std::string upper = spring["between"][0];
+    if (upper.starts_with("mount")) spring["length"] = 0.45 + 0.02;
+  }
+  for (nlohmann::json& point : document["points"]) {
+    const std::string name = point["name"];
+    if (!name.starts_with("hub")) continue;
+    point["velocity"] = {0.0, kUp[static_cast<std::size_t>(name.back() - '0')]};
+  }
+  const Start vehicle(scene_of(document, "changed"));
+  double lift = 0.0, moment = 0.0;  // N, N m
+  for (int i = 0; i < 3; ++i) {
+    const auto [height, rate] = road_under(i);
+    const double up = kUp[static_cast<std::size_t>(i)];
+    const double suspension = 150e3 * 0.02 + 10e3 * up;
+    const double tyre = 2400.0 * kG + 400e3 * height + 2e3 * (rate - up);
+    vehicle.expect("hub" + std::to_string(i),
+                   {up * up / 0.4, (tyre - suspension) / 400.0 - kG, 0.0});
+    lift += suspension;
+    moment += 1.5 * (1 - i) * suspension;
+  }
+  const double pitch = moment / (6000.0 * ((4.5 * 4.5 + 1.0) / 12.0 + 0.3 * 0.3));
+  for (int i = 0; i < 3; ++i) {  // mounts are 0.45 m above the pivots
+    vehicle.expect("mount" + std::to_string(i),
+                   {-0.45 * pitch, lift / 6000.0 - kG + 1.5 * (1 - i) * pitch, 0.0});
+  }
+}
+
+nlohmann::json robot_at_rest(int legs) {
+  nlohmann::json document = load_document("robot:" + std::to_string(legs));
+  for (nlohmann::json& point : document["points"]) point.erase("velocity");
+  for (const char* key : {"velocity", "angular_velocity"}) document["bodies"][0].erase(key);
+  return document;
+}
+
 TEST(Families, RobotStandsWithoutTheBlow) {
   for (const int legs : {6, 10}) {
-    nlohmann::json document = load_document("robot:" + std::to_string(legs));
-    for (nlohmann::json& point : document["points"]) point.erase("velocity");
-    for (const char* key : {"velocity", "angular_velocity"}) document["bodies"][0].erase(key);
-    const Start robot(scene_of(document, "changed"));
+    const Start robot(scene_of(robot_at_rest(legs), "changed"));
     for (const double a : robot.state.a) EXPECT_NEAR(a, 0.0, 1e-8);
+  }
+}
+
+/// What the platform's v and omega, six numbers, make of the velocity of a point.
+using PlatformMoves = Eigen::Matrix<double, 3, 6>;
+
+/// A leg, as the platform's motion sees it.
+struct RobotLeg {
+  PlatformMoves joint, knee;
+  Eigen::Vector3d pull;  // of its spring on the knee, 1
+};
+
+/// The joint moves by v + omega x r, the knee by t (u.joint) / (t.u): t is what it moves by when it
+/// turns about its hinge, u the upper link, whose length stays.
+RobotLeg robot_leg(int i, int legs) {
+  const double at = 2.0 * std::numbers::pi * i / legs, top = at + (i % 2 == 0 ? 0.5 : -0.5);
+  const Eigen::Vector3d out(std::cos(at), 0.0, std::sin(at)), up(0.0, 1.0, 0.0);
+  const Eigen::Vector3d lower = 0.5 * (std::cos(1.1) * out + std::sin(1.1) * up);
+  const Eigen::Vector3d r = 0.7 * Eigen::Vector3d(std::cos(top), 0.0, std::sin(top));
+  const Eigen::Vector3d u = 0.9 * up + r - out - lower;
+  const Eigen::Vector3d t = Eigen::Vector3d(-std::sin(at), 0.0, std::cos(at)).cross(lower);
+  RobotLeg leg;
+  leg.joint.leftCols<3>().setIdentity();
+  for (int k = 0; k < 3; ++k) leg.joint.col(3 + k) = Eigen::Vector3d::Unit(k).cross(r);
+  leg.knee = t * (u.transpose() * leg.joint) / t.dot(u);
+  leg.pull = (0.5 * up - 0.5 * out - lower).normalized();  // to the post, from the knee
+  return leg;
+}
+
+/// From rest, each spring tightened by another length: H x = Q of the platform's six freedoms x.
+TEST(Families, RobotMovesAsItsSpringsPull) {
+  constexpr int kLegs = 8;
+  constexpr double kMass = 20.0 * kLegs, kAcross = kMass * (0.7 * 0.7 / 4.0 + 0.01);
+  nlohmann::json document = robot_at_rest(kLegs);
+  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
+  H.diagonal() << kMass, kMass, kMass, kAcross, kMass * 0.7 * 0.7 / 2.0, kAcross;
+  Eigen::Matrix<double, 6, 1> Q = Eigen::Matrix<double, 6, 1>::Zero();
+  Q[1] = -kMass * kG;
+  for (int i = 0; i < kLegs; ++i) {
+    const auto& [joint, knee, pull] = robot_leg(i, kLegs);
+    // Of a rod a third is at each end and a sixth across; 2 kg below the knee, 1 kg above.
+    H += knee.transpose() * knee + joint.transpose() * joint / 3.0 +
+         (knee.transpose() * joint + joint.transpose() * knee) / 6.0;
+    Q -= kG * (1.5 * knee.row(1) + 0.5 * joint.row(1)).transpose();
+    // Stretched by 2 cm it bears its share of 20 kg and the links, by the work of rising.
+    const double standing = kG * (20.5 + 1.5 * knee(1, 1)) / pull.dot(knee.col(1));
+    const double tighter = 0.001 * (i + 1);  // m
+    Q += standing * (1.0 + tighter / 0.02) * knee.transpose() * pull;
+    nlohmann::json& length = document["springs"][static_cast<std::size_t>(i)]["length"];
+    length = length.get<double>() - tighter;
+  }
+  const Eigen::Matrix<double, 6, 1> x = H.ldlt().solve(Q);
+  const Start robot(scene_of(document, "changed"));
+  for (int i = 0; i < kLegs; ++i) {
+    const RobotLeg leg = robot_leg(i, kLegs);
+    const Eigen::Vector3d joint = leg.joint * x, knee = leg.knee * x;
+    robot.expect("P" + std::to_string(i), {joint[0], joint[1], joint[2]});
+    robot.expect("K" + std::to_string(i), {knee[0], knee[1], knee[2]});
   }
 }
 
@@ -352,6 +542,26 @@ TEST(Families, ClustersBreathe) {
   for (const char* name : {"P0_1", "P0_4", "P0_6"}) {  // the chain is at P0_0
     start.expect(name, 0.01 * 144.0 * (place(scene, name) - centre));
   }
+}
+
+/// Held straight where a beam would bend, and only there.
+TEST(Families, TwoFlexibleBeamsHeldStraightAreADoublePendulum) {
+  nlohmann::json document = load_document("flexible:2,nodes=5");
+  for (const nlohmann::json& spring : document["torsion_springs"]) {
+    document["constraints"].push_back({{"name", spring["name"]},
+                                       {"type", "angle"},
+                                       {"first", spring["from"]},
+                                       {"second", spring["to"]}});
+  }
+  document.erase("torsion_springs");
+  const Vector3 along{std::sin(0.05), -std::cos(0.05), 0.0};
+  const Vector3 across{std::cos(0.05), std::sin(0.05), 0.0};
+  expect_double_pendulum(document,
+                         {.mass = 10.0,
+                          .centre = 2.0 * along - 0.1 * across,
+                          .inertia = 10.0 * (16.0 / 3.0 + 0.1 * 0.1 + 0.05 * 0.05),
+                          .hinge = 4.0 * along},
+                         {"P1", "P4"}, {"P5", "P8"});
 }
 
 TEST(Families, FlexibleBeamTurnsAsABodyAndBendsAsABeam) {

@@ -44,7 +44,7 @@ Implementation implementation() {
   Variant fronts;
   fronts.name = "fronts";
   fronts.description =
-      "dense fronts in a flat program, small scenes as one dense matrix; any scene";
+      "dense fronts in a flat program, small scenes as one dense matrix; all but laws of forces";
   fronts.create = create_fronts;
   fronts.serves = kFronts;
   fronts.create_batch = create_batch;

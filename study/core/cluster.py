@@ -25,7 +25,7 @@ def profile_folder(name):
 
 
 def dry_run(columns):
-    jobs = [(part, column, seconds) for part, names in columns.items() for column, seconds in names.items()]
+    jobs = [(part, column, seconds + 60 * GRACE) for part, names in columns.items() for column, seconds in names.items()]
     for part, column, seconds in jobs:
         print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")
     print(f"{len(jobs)} jobs, at most {sum(seconds for _, _, seconds in jobs) / 3600:.2f} node-hours")
@@ -77,14 +77,14 @@ def _workflow(studyset, cluster, columns, target):
 def end_jobs(folder, cluster):
     """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
     path, end = home(folder) / "jobs", time.monotonic() + ENDING
-    if ids := [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []:
+    if ids := [one for one in path.read_text().split() if state(folder, cluster, one) == "running"] if path.exists() else []:
         subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
-    while any(runs(folder, cluster, one) for one in ids):
+    while any(state(folder, cluster, one) == "running" for one in ids):
         if time.monotonic() > end:
             raise StudyError(f"jobs {' '.join(ids)} do not end: the cluster does not answer, or keeps them; try again later")
         time.sleep(1)
     path.unlink(missing_ok=True)
 
 
-def runs(folder, cluster, job):
-    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True, check=False).stdout.strip() == "running"
+def state(folder, cluster, job):
+    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True, check=False).stdout.strip()

@@ -1,4 +1,5 @@
 # One job of the workflow: the cells of a part or, on a cluster, of a column; a page; the front page.
+import contextlib
 import importlib
 import os
 import select
@@ -11,7 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from analysis.core.files import StudyError
-from study.core import child, locks, node
+from study.core import child, node
 from study.core.lab import Lab, cores
 from study.core.profile import plan_of
 from study.core.studyset import StudySet, finish, need_records
@@ -51,8 +52,8 @@ def run(studyset, part):
 
 def column(studyset, part, name):
     """Of a cluster: one column, on this node."""
-    with locks.only_one_study():
-        node.admit(studyset)
+    with contextlib.ExitStack() as held:
+        node.admit(studyset, held)
         _measure(studyset, part, name, plan_of(part).columns(studyset.profile.parts[part])[name])
 
 

@@ -2,7 +2,6 @@
 import contextlib
 import fcntl
 import os
-import tempfile
 import time
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from analysis.core.files import StudyError
 from study.core import machine
 
 POLL = 0.5  # s
+MACHINE = Path(os.environ.get("MBS_LOCKS", "/tmp"))  # one place whatever a job's TMPDIR is; tests have theirs
 
 
 def only_one(folder, seconds=0):
@@ -23,11 +23,11 @@ def noting(folder):
 
 
 @contextlib.contextmanager
-def only_one_study(wait=False, tell=print):
-    """Holds the machine for a study; with `wait` behind the others. Says so where the machine is busy."""
-    path = Path(tempfile.gettempdir()) / "mbs-study.lock"
+def only_one_study(wait=False, tell=print, most=float("inf")):
+    """Holds the machine for a study; with `wait` behind the others, for `most` seconds. Says so where the machine is busy."""
+    path = MACHINE / "mbs-study.lock"
     held = f"another study is measuring on this machine ({path} is held): wait until it is done, or queue with --wait"
-    with _hold(path, held, float("inf") if wait else 0, tell):
+    with _hold(path, held, most if wait else 0, tell):
         if said := machine.busy():
             tell(said)
         yield
@@ -35,7 +35,7 @@ def only_one_study(wait=False, tell=print):
 
 def only_one_timing():
     """Holds the machine for what is timed: whoever measures holds it, not the study that it belongs to, which may have died a moment ago."""
-    path = Path(tempfile.gettempdir()) / "mbs-timing.lock"
+    path = MACHINE / "mbs-timing.lock"
     return _hold(path, f"something else is being timed on this machine ({path} is held)", 30)
 
 

@@ -13,6 +13,7 @@ from study.core.cell import LAYOUT, Cell, control, twin_of
 from study.core.studyset import context_of, start, writable
 
 CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
+WAIT = 180  # s for another study on the machine: a part of a job's grace (cluster.py)
 TRIES = 2  # so often must an A/A control be decided to count as failed: once in twenty it is by chance
 
 
@@ -48,12 +49,10 @@ def forget(folder):
             path.unlink()
 
 
-def begin(folder, no_evidence=""):
-    """The set of what the plan says, of this node's kind. `no_evidence`: why it is none, for whoever reads the set."""
+def begin(folder, **more):
+    """The set of what the plan says, of this node's kind, with `more` facts."""
     plan = read_object(home(folder) / "plan.json")
-    found = start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
-    if no_evidence:
-        write_json(folder / "set.json", found.facts | {"no_evidence": no_evidence})
+    start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"], **more)
 
 
 def first(studyset):
@@ -65,10 +64,12 @@ def first(studyset):
         raise
 
 
-def admit(studyset):
-    """StudyError unless this node is of the set's kind, has room and passes its A/A control; it is not asked again then."""
+def admit(studyset, held):
+    """StudyError unless this node is free, of the set's kind, has room and passes its A/A control; it is not asked again then. `held`: an
+    ExitStack, which keeps other studies off the node."""
     folder, own, alone, lasting = studyset.folder, None, False, ""
     try:
+        held.enter_context(locks.only_one_study(True, most=WAIT))
         writable(Path(tempfile.gettempdir()))
         context = context_of(control(studyset.registry, studyset.profile.blas))
         only = home(folder) / "only"
@@ -133,7 +134,7 @@ def _begin_beside(folder, own, failed):
         if not (own / "set.json").exists():
             write_text(home(own) / "beside", f"{folder}\n")
             write_json(home(own) / "plan.json", read_object(home(folder) / "plan.json"))
-            begin(own, failed)
+            begin(own, **({"no_evidence": failed} if failed else {}))  # at once: a kill may leave the set as it is then
 
 
 def _slug(text):

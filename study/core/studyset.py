@@ -150,12 +150,12 @@ def beginning(folder):
         raise
 
 
-def start(folder, profile, only, chosen):
-    """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
+def start(folder, profile, only, chosen, **more):
+    """Records what a folder is for, with `more` facts, or continues it; StudyError if it holds results of something else."""
     registry = listed()
     select(registry, only)
     context = context_of(control(registry, profile.blas))
-    record = begun(profile.name, only, chosen, context)
+    record = begun(profile.name, only, chosen, context, **more)
     if (folder / "set.json").exists():
         known = opened(folder)
         need_same(known.facts["context"], context, str(folder))

@@ -12,13 +12,14 @@ from study.tests.browser import Browser
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "build" / "mbs"
 FAKE = Path(__file__).with_name("fake_mbs.py")
-TEMPORARY = tempfile.TemporaryDirectory()  # apart from the machine's locks: a real study may run
+TEMPORARY = tempfile.TemporaryDirectory()
+os.environ["MBS_LOCKS"] = TEMPORARY.name  # apart from the machine's: a real study may run
 
 
 def environment(program=PROGRAM, **more):
     clean = {key: value for key, value in os.environ.items() if not key.startswith(("FAKE_", "MBS_"))}
     # With CI=true Snakemake asks each second how the jobs of a cluster stand, else every ten.
-    return clean | {"MBS_PROGRAM": str(program), "TMPDIR": TEMPORARY.name, "CI": "true"} | more
+    return clean | {"MBS_PROGRAM": str(program), "TMPDIR": TEMPORARY.name, "MBS_LOCKS": TEMPORARY.name, "CI": "true"} | more
 
 
 def study(*arguments, program=PROGRAM, seconds=300, **more):

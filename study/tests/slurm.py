@@ -25,9 +25,9 @@ class Slurm:
         self.folder, self.mark, self.daemons, self.host = folder, f"{os.getpid()}-{time.time_ns()}", {}, socket.gethostname()
         folder.mkdir()
         for node in NODES:
-            (folder / f"tmp-{node}").mkdir()  # with its locks: each is a machine of its own
+            (folder / f"locks-{node}").mkdir()  # each is a machine of its own
         prolog = folder / "prolog"
-        prolog.write_text(f'#!/bin/bash\necho "export TMPDIR={folder}/tmp-$SLURMD_NODENAME"\n')
+        prolog.write_text(f'#!/bin/bash\necho "export MBS_LOCKS={folder}/locks-$SLURMD_NODENAME"\n')
         prolog.chmod(0o755)
         ports = free_ports(1 + len(NODES))
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2**21

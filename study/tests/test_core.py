@@ -31,7 +31,7 @@ from study.core.cell import Cell, Contender, by_environment, on_usual_pairs
 from study.core.front import duration
 from study.core.lab import BETWEEN, Lab, cores
 from study.core.options import Parser, positive
-from study.tests.conftest import FAKE, TEMPORARY, study
+from study.tests.conftest import FAKE, TEMPORARY, environment, study
 
 ONE, TWO = Contender("one/a", "one/a"), Contender("two/b", "two/b", "openblas")
 CELL = Cell("simulate", "four-bar:3", (ONE,), ("--step", 0.001), "map")
@@ -731,12 +731,13 @@ def test_threads_that_write_one_file_at_once_do_not_disturb_each_other(tmp_path)
 
 
 def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(locks, "MACHINE", tmp_path)
     monkeypatch.setattr(locks, "POLL", 0.02)
     monkeypatch.setattr(os, "getloadavg", lambda: (0.1, 0, 0))
     with locks.only_one_study():
-        with pytest.raises(StudyError, match="queue with --wait"), locks.only_one_study():
-            pass
+        for most in ({}, {"wait": True, "most": 0.1}):
+            with pytest.raises(StudyError, match="queue with --wait"), locks.only_one_study(**most, tell=str):
+                pass
         told, order = [], []
 
         def queue():
@@ -750,17 +751,25 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
     assert order == ["first", "second"] and told == ["waiting until another study is done"]
 
 
+def test_locks_of_the_machine_are_where_no_job_moves_them(tmp_path):
+    where = [environment(TMPDIR=str(tmp_path), **more) for more in ({}, {"MBS_LOCKS": "/elsewhere"})]
+    del where[0]["MBS_LOCKS"]
+    said = [subprocess.run(["/usr/bin/python3", "-c", "from study.core import locks; print(locks.MACHINE)"], cwd=ROOT, env=one, text=True,
+                           capture_output=True, check=True).stdout for one in where]
+    assert said == ["/tmp\n", "/elsewhere\n"]
+
+
 def test_a_file_system_without_locks_is_not_taken_for_another_study(tmp_path, monkeypatch):
     def none(file, how):
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(locks, "MACHINE", tmp_path)
     monkeypatch.setattr(locks.fcntl, "flock", none)
     with pytest.raises(StudyError, match="cannot lock .*: No locks available"), locks.only_one_study():
         pass
 
 
 def test_a_busy_machine_is_said_when_a_study_begins(tmp_path, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(locks, "MACHINE", tmp_path)
     for load, said in ((0.1, []), (1.7, ["the machine is busy (load 1.7 over the last minute): times may be too long"])):
         monkeypatch.setattr(os, "getloadavg", lambda load=load: (load, 0, 0))
         told = []

@@ -1,5 +1,4 @@
 # study/merge: what holds on several machines.
-import json
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,12 +7,12 @@ import numpy
 import pandas
 import pytest
 
-from analysis.core.files import ROOT, StudyError, write_json
+from analysis.core import records, schema
+from analysis.core.files import ROOT, StudyError, read_json, write_json
 from analysis.core.timing import Ranking, Ratio
-from study.tests.conftest import study
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
-from study.tools.merge.main import _said, labels, need_alike
+from study.tools.merge.main import _said, labels, merge, need_alike
 
 ONE = Ratio(1.0, 1.0, 1.0)
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
@@ -87,7 +86,7 @@ def test_other_builds_and_dirty_trees_are_refused(tmp_path, key, value, words):
     context = {"commit": "c", "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false", "cpu_model": "p",
                "blas": "openblas", "blas_loaded": "/usr/lib/aarch64-linux-gnu/libblas.so"}
     arm, intel = context, context | {"blas_loaded": "/usr/lib/x86_64-linux-gnu/libblas.so"}
-    first, alike, *others = [SimpleNamespace(folder=tmp_path / name, facts={"context": one, "date": "today"}) for name, one in
+    first, alike, *others = [SimpleNamespace(folder=tmp_path / name, facts={"context": one, "date": "today", "parts": []}) for name, one in
                              (("first", arm), ("alike", intel), ("second", arm | {key: value}), ("third", arm))]
     write_json(tmp_path / "first" / "contexts" / "own-atlas.json", context)
     write_json(tmp_path / "third" / "contexts" / "own-atlas.json", context | {key: value})
@@ -99,7 +98,7 @@ def test_other_builds_and_dirty_trees_are_refused(tmp_path, key, value, words):
 
 
 def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
-    sets = [SimpleNamespace(folder=tmp_path / name, facts={"context": {"dirty": "false"}} | more) for name, more in
+    sets = [SimpleNamespace(folder=tmp_path / name, facts={"context": {"dirty": "false"}, "parts": []} | more) for name, more in
             (("sound", {}), ("alone", {"no_evidence": "its A/A control failed"}))]
     for builds in (True, False):
         need_alike(sets[0], sets[0], builds)
@@ -109,11 +108,22 @@ def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(machine, "table", lambda folder, part, name: twins if part == "families" else twins[:0])
     with pytest.raises(StudyError, match="6 of 26 A/A controls were decided, more than chance allows"):
         need_alike(sets[0], sets[0])
+    sound = pandas.DataFrame({"ratio": 1.0, "decided": [False] * 100})  # which hide in all what fails alone
+    monkeypatch.setattr(machine, "table", lambda folder, part, name: twins if part == "map" else sound)
+    assert machine.controls(sets[0])["sound"]
+    with pytest.raises(StudyError, match="6 of 26 A/A controls were decided"):
+        need_alike(sets[0], sets[0])
+
+
+def test_a_set_without_controls_is_refused(tmp_path):
+    none = SimpleNamespace(folder=tmp_path, facts={"context": {"dirty": "false"}, "parts": ["limit", "map"]})
+    with pytest.raises(StudyError, match="is no evidence: it has no A/A controls"):
+        need_alike(none, none)
 
 
 def fake(name, commit, cpu, **context):
     known = {"commit": commit, "cpu_model": cpu, "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false"}
-    return SimpleNamespace(folder=Path(name), facts={"context": known | context})
+    return SimpleNamespace(folder=Path(name), facts={"context": known | context, "parts": []})
 
 
 @pytest.mark.parametrize("others, chosen", [
@@ -138,24 +148,56 @@ def test_a_claim_has_a_row_with_the_verdict_of_each_machine(monkeypatch):
     assert [(id, [row and row["verdict"] for row in rows]) for id, _, _, rows in found] == [("T1", ["confirmed", "refuted"]), ("F7", [None, "mixed"])]
 
 
+def day(number, folder):
+    """A copy of a stored set, as if of another day: its tables are those of a record a part that took another time."""
+    shutil.copytree(SETS[0], folder, ignore=shutil.ignore_patterns("raw"))
+    for part in machine.PARTS:
+        records.write(folder / "raw" / part / "c" / "x.json", {"cell": {"part": part, "role": ""}, "status": "done", "reason": "", "seconds": number,
+                                                               "command": [], "context": {}})
+        edit(folder / part / schema.DIGESTS, records=schema.digest_of(records.read_part(folder, part)))
+    edit(folder / "set.json", date=f"2026-01-0{number} 00:00")
+
+
+def edit(path, **values):
+    write_json(path, read_json(path) | values)
+
+
+@pytest.fixture
+def days(tmp_path, monkeypatch):
+    """Arguments of study/merge: two sets, and where to."""
+    monkeypatch.chdir(tmp_path)
+    day(1, tmp_path / "1")
+    day(2, tmp_path / "2")
+    return ["1", "2", "--to", "merged"]
+
+
 @pytest.mark.skipif(not SETS, reason="no stored set")
-def test_two_sets_become_a_page_and_a_table(tmp_path):
-    for day in (1, 2):
-        shutil.copytree(SETS[0], tmp_path / str(day))
-        facts = json.loads((tmp_path / str(day) / "set.json").read_text())
-        (tmp_path / str(day) / "set.json").write_text(json.dumps(facts | {"date": f"2026-01-0{day} 00:00"}))
-    done = study("merge", tmp_path / "1", tmp_path / "2", "--fresh", tmp_path / "2", "--to", tmp_path / "merged")
-    assert done.returncode == 0, done.stderr
-    assert "0 differ by machine" in done.stdout and "alike (100 %)" in done.stdout and "fresh set's winner lies in" in done.stdout
+def test_two_sets_become_a_page_and_a_table(days, tmp_path, capsys):
+    day(3, tmp_path / "3")
+    merge([*days, "--fresh", "3"])
+    said = capsys.readouterr().out
+    assert "0 differ by machine" in said and "alike (100 %)" in said and "fresh set's winner lies in" in said
     assert "2026-01-02" in (tmp_path / "merged" / "index.html").read_text()
     assert "2026-01-02" in (tmp_path / "merged" / "mechanisms.svg").read_text()
+    edit(tmp_path / "2" / "set.json", context=read_json(tmp_path / "2" / "set.json")["context"] | {"commit": "0" * 40})
+    with pytest.raises(StudyError, match="of another build"):
+        merge(days)
+    merge([*days, "--other-builds"])
+    assert "0 differ by machine" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not SETS, reason="no stored set")
+def test_what_is_not_merged_is_said(days, tmp_path):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.txt").touch()
-    refused = study("merge", tmp_path / "1", tmp_path / "2", "--to", tmp_path / "full")
-    assert refused.returncode == 2 and "is not empty" in refused.stderr
-    assert study("merge", tmp_path / "1").returncode == 2
-    facts["context"]["commit"] = "0" * 40
-    (tmp_path / "2" / "set.json").write_text(json.dumps(facts))
-    assert "of another build" in study("merge", tmp_path / "1", tmp_path / "2", "--to", tmp_path / "merged").stderr
-    done = study("merge", tmp_path / "1", tmp_path / "2", "--other-builds", "--to", tmp_path / "merged")
-    assert done.returncode == 0 and "0 differ by machine" in done.stdout
+    shutil.copytree(tmp_path / "2", tmp_path / "copy")
+    edit(tmp_path / "copy" / "set.json", date="2026-01-09 00:00")
+    for words, said in ((["1", "2", "--to", "full"], "is not empty"), (["1"], "needs two sets or more"),
+                        (["1", "1"], "1 holds records of .*1: it is that set"), (["1", "2", "copy"], "copy holds records of .*2: .* or a copy"),
+                        ([*days, "--fresh", "copy"], "copy holds records of .*2: .* or a copy")):
+        with pytest.raises(StudyError, match=said):
+            merge(words)
+    edit(tmp_path / "2" / "map" / schema.DIGESTS, records="0" * 64)
+    with pytest.raises(StudyError, match="2/map: its tables are not those of its records"):
+        merge(days)
+    assert not (tmp_path / "merged").exists()

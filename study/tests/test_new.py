@@ -27,7 +27,9 @@ def test_what_it_writes_compiles_without_a_warning(repository, library, capsys):
     assert sorted(path.name for path in folder.iterdir()) == [
         "CMakeLists.txt", "README.md", "implementation.cpp", "simulation.cpp", "simulation.hpp"]
     assert all("@" not in path.read_text() for path in folder.iterdir())
-    assert "version = \"TODO" not in (folder / "implementation.cpp").read_text()  # it would stand in every record
+    described = (folder / "implementation.cpp").read_text()
+    assert "version = \"TODO" not in described and ("ilaver_" in described) == (library == "blas")  # it stands in every record
+    assert "Unsupported" in (folder / "simulation.cpp").read_text()  # a dense one refuses what does not fit into memory
     for source in folder.glob("*.cpp"):
         done = subprocess.run(["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
                                "-I", ROOT / "harness" / "include", "-isystem", "/usr/include/eigen3", source],

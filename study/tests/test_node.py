@@ -4,12 +4,13 @@ import os
 import shutil
 import signal
 import subprocess
+from contextlib import ExitStack
 from types import SimpleNamespace
 
 import pytest
 
 from analysis.core.files import StudyError, read_object, write_json, write_text
-from study.core import cluster, locks, node
+from study.core import cluster, job, locks, node, studyset as sets
 from study.core.studyset import StudySet
 from study.tests.conftest import FAKE, ROOT, environment, study
 from study.tests.slurm import until
@@ -70,14 +71,19 @@ def run(profile, folder, **more):
 RUN = ("--profile", "smoke", "--part", "map")
 
 
+def admit(studyset):
+    with ExitStack() as held:
+        node.admit(StudySet(studyset.folder), held)
+
+
 def refused(studyset, words):
     with pytest.raises(StudyError, match=words):
-        node.admit(StudySet(studyset.folder))
+        admit(studyset)
     return read_object(studyset.folder / "set.json")["context"]
 
 
 def test_a_node_of_the_sets_kind_is_admitted(begun):
-    node.admit(begun)
+    admit(begun)
     assert (node.home(begun.folder) / "nodes" / "first").exists() and not node.refusals(begun.folder)
 
 
@@ -104,12 +110,16 @@ def test_another_program_is_another_build(begun, monkeypatch, tmp_path):
 
 
 def test_a_failed_control_is_a_set_of_its_node(begun, monkeypatch):
+    def noted(path, data):  # whatever ends the node, its set says what it is
+        assert path.name != "set.json" or data["no_evidence"]
+        write_json(path, data)
+    monkeypatch.setattr(sets, "write_json", noted)
     monkeypatch.setenv("FAKE_NEW", f"{begun.contenders[0].name}+twin=9")
     refused(begun, "its A/A control failed: .* times its own time")
     [own] = node.own_sets(begun.folder)
     assert own.name == "set-first" and (node.home(own) / "only").read_text() == "first\n"
     assert StudySet(own).facts["no_evidence"].startswith("its A/A control failed") and "no_evidence" not in begun.facts
-    node.admit(StudySet(own))  # which says whose it is, and is measured
+    admit(StudySet(own))  # which says whose it is, and is measured
     monkeypatch.setenv("SLURMD_NODENAME", "second")
     refused(StudySet(own), "it is that of first alone")
 
@@ -140,6 +150,16 @@ def test_a_node_that_cannot_run_the_program_is_refused(begun, monkeypatch):
     monkeypatch.setenv("MBS_PROGRAM", "/bin/false")
     refused(begun, "first is not of this set: /bin/false bench does not work")
     assert node.own_sets(begun.folder) == []
+
+
+def test_a_node_that_another_study_holds_is_waited_for_and_then_refused(begun, monkeypatch):
+    monkeypatch.setattr(node, "WAIT", 0.1)
+    with locks.only_one_study(), pytest.raises(StudyError, match="first is not of this set: another study is measuring"):
+        job.column(StudySet(begun.folder), "map", "any")
+    assert [*node.refusals(begun.folder)] == ["first"]
+    cluster._plan(begun.profile, [], ["map"], begun.folder, {})
+    assert node.refusals(begun.folder) == {}  # the next run asks it again
+    admit(begun)
 
 
 def test_a_full_disk_of_a_node_is_named(begun, monkeypatch):
@@ -186,7 +206,7 @@ def test_jobs_of_a_killed_controller_are_ended(profile, tmp_path):
 
 def test_a_dry_run_says_what_it_takes(profile, tmp_path):
     done = study("run", *RUN, "--results", tmp_path / "set", "--cluster", profile, "--dry-run", program=FAKE)
-    assert "2 jobs, at most 0.01 node-hours" in done.stdout and not (tmp_path / "set").exists()
+    assert "2 jobs, at most 0.51 node-hours" in done.stdout and not (tmp_path / "set").exists()
 
 
 @pytest.mark.parametrize("arguments, words", [(("--cluster", "nosuch"), "nosuch is no profile (config.yaml is missing); known: slurm"),

@@ -1,13 +1,15 @@
 # study/paper: the paper in the repository is of its set, and each way to be wrong is found. No LaTeX is needed.
 import re
 import shutil
+from types import SimpleNamespace
 
+import pandas
 import pytest
 
 from analysis.core.files import ROOT, read_json, write_json
 from study.tests.conftest import study
 from study.tools import fragments, store
-from study.tools.paper import artifact, audit, known as known_sets, tables
+from study.tools.paper import artifact, audit, known as known_sets, main, tables
 from study.tools.paper.claims import claims
 from study.tools.paper.known import Known
 from study.tools.paper.numbers import NOT_MEASURED, Number, numbers
@@ -65,9 +67,15 @@ def test_controls_are_those_by_which_the_set_is_judged(known, found):
     assert f"{sum(table.decided.sum() for table in tables)} were decided" in found["design.controls"].text
 
 
-@pytest.mark.parametrize("typed", ["KLU takes 1.31 times as long.", "On 19 mechanisms it leads.", r"\caption{At $n=82$ it is fast.}", "10\\,µs a step"])
+@pytest.mark.parametrize("typed", ["KLU takes 1.31 times as long.", "On 19 mechanisms it leads.", r"\caption{At $n=82$ it is fast.}",
+                                   "10\\,µs a step", r"It takes \texttt{1.31} times as long.", r"\texttt{~12~µs} a step"])
 def test_a_typed_number_is_found(found, typed):
     assert [one for one in wrong(in_text(typed), found) if "is typed" in one]
+
+
+@pytest.mark.parametrize("name", ["four-bar:49,fill=0.50", "-{}-tolerance 1e-6", "results/set2/x.csv", r"\val{set.name}"])
+def test_a_name_may_have_digits(found, name):
+    assert wrong(in_text(rf"\texttt{{{name}}}"), found) == []
 
 
 def test_a_measured_number_may_not_be_called_given(found):
@@ -207,6 +215,27 @@ def test_claims_are_told_of_a_set_that_has_a_few_parts(known, tmp_path):
     assert done.returncode == 0 and len(done.stdout.splitlines()) == len(claims())
     holds, said = claims()[-1].found(known)
     assert f"{artifact.SAYS[holds]}: {claims()[-1].text} ({said})" in done.stdout and f"not measured: {claims()[0].text}\n" in done.stdout
+
+
+@pytest.mark.parametrize("verdicts, holds", [
+    (["held", "held"], True), (["held", "held where measured"], None), (["held where measured", "not held"], False), (["held", "open"], False),
+    (["not measured"], None)])
+def test_batches_hold_where_all_of_them_do(verdicts, holds):
+    row = {"what": "throughput of batches", "sign": "≥", "bound": 4.0, "worst": 4.0, "low": 4.0, "high": 4.0}
+    rows = pandas.DataFrame([row | {"verdict": one} for one in verdicts])
+    [claim] = [one for one in claims() if one.name == "batches"]
+    assert claim.found(SimpleNamespace(tables=lambda part: {"held": rows}))[0] is holds
+
+
+@pytest.mark.parametrize("pages, warning, said", [
+    (12, "LaTeX Font Warning: Font shape `T1/x' undefined", ""), (9, "", "10 to 14 pages"), (15, "", "10 to 14 pages"),
+    (12, "LaTeX Warning: Reference `tab:x' on page 3 undefined on input line 7.", "Reference `tab:x' on page 3 undefined"),
+    (12, "LaTeX Warning: Citation 'who' on page 3 undefined on input line 7.", "Citation 'who' on page 3 undefined")])
+def test_a_paper_of_too_many_pages_or_with_unknown_references_is_an_error(tmp_path, monkeypatch, capsys, pages, warning, said):
+    monkeypatch.setattr(audit, "BUILD", tmp_path)
+    monkeypatch.setattr(main.subprocess, "run", lambda *_, **__: SimpleNamespace(returncode=0, stdout=""))
+    (tmp_path / "paper.log").write_text(f"{warning}\nOutput written on build/paper.pdf ({pages} pages, 1 bytes).\n")
+    assert main.build() == (1 if said else 0) and said in capsys.readouterr().out
 
 
 def test_a_set_that_is_not_stored_is_refused(tmp_path):

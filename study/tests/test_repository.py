@@ -5,6 +5,7 @@ import subprocess
 
 import pandas
 import pytest
+import yaml
 
 from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
@@ -51,6 +52,11 @@ def test_every_part_says_what_it_runs():
 def test_the_rule_is_that_of_its_set():
     text = fragments.RULE.read_text(encoding="utf-8")
     assert fragments.of_set(text) == text, "study/store writes it anew"
+
+
+def test_it_is_cited_with_no_earlier_date_than_that_of_its_set():
+    released = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))["date-released"]
+    assert str(released) >= read_json(fragments.main_set() / "set.json")["date"][:10]
 
 
 @pytest.mark.parametrize("path", fragments.texts(), ids=lambda path: str(path.relative_to(ROOT)))

@@ -85,11 +85,13 @@ def test_what_cannot_be_drawn_is_said(tmp_path, text, options, words):
 
 @pytest.fixture
 def profile(tmp_path):
-    """A cluster that is this machine: its array runs at once."""
+    """A cluster that is this machine: its array runs at once, and what a node writes last is seen late."""
     folder = tmp_path / "profile"
     folder.mkdir()
-    array = 'for i in $(seq "$1"); do bash "$2" "$i" > log-"$i" 2>&1; done; echo all'
-    for name, text in {"array": array, "submit": "", "status": "echo success", "cancel": "", "config.yaml": ""}.items():
+    array = ('for i in $(seq "$1"); do bash "$2" "$i" > log-"$i" 2>&1; done; ls done-* > .cluster/all; '
+             '[ ! -e done-"$1" ] || { mv done-"$1" .cluster; (sleep 2; mv .cluster/done-"$1" .) > /dev/null 2>&1 & }; echo all')
+    status = '[ "$(wc -l < .cluster/all)" = 2 ] && echo success || echo failed'
+    for name, text in {"array": array, "submit": "", "status": status, "cancel": "", "config.yaml": ""}.items():
         (folder / name).write_text(f"#!/bin/bash\n{text}\n")
         (folder / name).chmod(0o755)
     return folder

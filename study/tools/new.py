@@ -18,9 +18,18 @@ TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "mai
 EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
 COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
 IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
-LIBRARIES = {"none": ("none", "", '""', "", ""),  # (name, licence, version as C++, include, how it takes what is stored)
-             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE),
-             "blas": ("LAPACK", "BSD-3-Clause", '""', "", COLUMNS.format("LAPACK"))}
+ILAVER = '\nextern "C" void ilaver_(int* major, int* minor, int* patch);\n'
+LAPACK = """std::string lapack_version() {
+  int major = 0, minor = 0, patch = 0;
+  ilaver_(&major, &minor, &patch);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+"""
+# (name, licence, version as C++, include, how it takes what is stored, what the version needs outside of and inside namespaces)
+LIBRARIES = {"none": ("none", "", '""', "", "", "", ""),
+             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE, "", ""),
+             "blas": ("LAPACK", "BSD-3-Clause", "lapack_version()", "", COLUMNS.format("LAPACK"), ILAVER, LAPACK)}
 
 
 def new(arguments):
@@ -37,7 +46,8 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@"), (options.name, *LIBRARIES[options.library])))
+        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@", "@ILAVER@", "@LAPACK@"),
+                          (options.name, *LIBRARIES[options.library])))
         for path in sorted(SKELETON.iterdir()):
             stem, _, only = path.name.partition("@")
             if only in ("", options.library):

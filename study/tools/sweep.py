@@ -18,7 +18,7 @@ from analysis.core import style
 from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.outcomes import FINISHED
 from study.core import locks
-from study.core.cluster import end_jobs, profile_folder, runs
+from study.core.cluster import end_jobs, profile_folder, state
 from study.core.executor import USAGE, program_of
 from study.core.front import Display
 from study.core.node import home
@@ -27,6 +27,7 @@ from study.core.options import Parser
 LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
 PARTS = 16    # of a sweep on a cluster
 CELLS = 40    # of a surface along a parameter, at most
+LATENCY = 60  # s until a file of a node is seen here: as study/cluster/slurm has it for study/run
 FAILED = "#c9403a"
 
 
@@ -192,12 +193,15 @@ def _make(table, folder, profile, parts):
         if given.returncode:
             raise StudyError(f"{profile / 'array'}: {_last(given.stderr, 'failed')}")
         display = Display()
-        while runs(folder, profile, given.stdout.strip()):
+        while (now := state(folder, profile, given.stdout.strip())) == "running":
             display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
             time.sleep(1)
         display.end()
     finally:
         end_jobs(folder, profile)
+    end = time.monotonic() + (LATENCY if now == "success" else 0)
+    while time.monotonic() < end and not all(mark.exists() for mark in done):
+        time.sleep(1)
     for number, mark in enumerate(done, 1):
         if not mark.exists():
             raise StudyError(f"part {number} of {len(parts)} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "

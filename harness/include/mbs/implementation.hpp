@@ -63,7 +63,7 @@ struct Variant {
 /// What an implementation is for.
 enum class Role {
   contender,  ///< takes part in all comparisons
-  paper,      ///< as a contender, and stands for one of the paper's in claims about it
+  paper,      ///< as a contender; variants of it, named in analysis/map/paper.py, stand for the paper's
   example,    ///< to be read: gated and listed, timed only where it is named
 };
 

@@ -27,7 +27,7 @@ struct RungReport {
   std::string detail;  ///< one line: why it is not served, or what failed; may be empty
   // Of a failed rung.
   Finding finding;
-  std::string equation;               ///< of paper/README.md
+  std::string equation;               ///< of paper/README.md, or another file
   std::vector<std::string> mistakes;  ///< the usual ones
   std::string command;                ///< shows more: the reference's numbers, or the whole check
 };

@@ -300,8 +300,8 @@ std::vector<NamedTerm> named_terms() {
          b.drive_point();
          b.drive_value(b.bilinear(D, P, E, C), 0.2);
        }},
-      {"mass across axes", "all of M: Model::mass()", [](TermBuilder& b) { b.mass_across_axes(); }},
-      {"stored zeros", "all of M: Model::mass()",
+      {"mass across axes", "all of M, Eqs. (3), (5)", [](TermBuilder& b) { b.mass_across_axes(); }},
+      {"stored zeros", "all of M, Eqs. (3), (5)",
        [](TermBuilder& b) {
          b.data().mass.push_back({7, 0, 0.0});
          b.data().mass.push_back({6, 1, 0.0});

@@ -295,15 +295,18 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
   const auto most = static_cast<std::size_t>(largest);
   if (is_driven(model)) result.driven = driven_parts(pattern, pattern.groups(loose), rows, most);
   pattern.take_off_hanging();
+  // What a spring ties to a loop is no part of it: its own freedoms pass energy on as before.
+  ConnectedParts rigid(model, false);
+  const auto rigid_part_of = [&](int col) { return static_cast<std::size_t>(rigid.part_of(col)); };
   std::vector<bool> has_loop(freedoms.size());
   for (ConstraintBlock& piece : pattern.pieces(loose)) {
     const std::size_t size = piece.rows.size();
     if (size == 0 || size > most || piece.cols.size() != size + 1) continue;
-    if (size > 1) has_loop[part_of(piece.cols.front())] = true;
+    if (size > 1) has_loop[rigid_part_of(piece.cols.front())] = true;
     result.free.push_back(sorted(std::move(piece)));
   }
   for (int col = 0; col < cols; ++col) {
-    if (has_loop[part_of(col)]) result.passes_on[static_cast<std::size_t>(col)] = false;
+    if (has_loop[rigid_part_of(col)]) result.passes_on[static_cast<std::size_t>(col)] = false;
   }
   return result;
 }

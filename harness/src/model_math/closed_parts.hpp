@@ -35,7 +35,8 @@ struct ClosedParts {
   /// Columns less independent rows.
   int freedoms = 0;
   /// Of each column: whether the part that it is connected with (ConnectedParts) has more freedoms
-  /// than one and none of `free` that is more than a rod. Those pass energy on to each other.
+  /// than one, and constraints join it to none of `free` that is more than a rod. Those pass energy
+  /// on to each other.
   std::vector<bool> passes_on;
   /// Of each column: whether rows of the part that it is connected with were left out because they
   /// depend on others.

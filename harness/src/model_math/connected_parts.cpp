@@ -6,7 +6,7 @@
 
 namespace mbs {
 
-ConnectedParts::ConnectedParts(const Model& model)
+ConnectedParts::ConnectedParts(const Model& model, bool by_forces)
     : model_(model), leader_(model.points().size() + 1) {
   std::iota(leader_.begin(), leader_.end(), 0);
   is_driven_.resize(model.points().size(), false);
@@ -34,6 +34,7 @@ ConnectedParts::ConnectedParts(const Model& model)
   }
   for (const MassEntry& entry : model.mass()) join({owner(entry.row), owner(entry.col)});
   for (const DrivenMass& mass : model.driven_mass()) drive({owner(mass.coordinate)});
+  if (!by_forces) return;
   const auto on_line = [&](const auto& one) { join({one.a, one.b}); };
   const auto about_axis = [&](const auto& one) { join({one.a, one.b, one.c, one.d, one.axis}); };
   std::ranges::for_each(model.springs(), on_line);

@@ -13,8 +13,8 @@ namespace mbs {
 /// one part; what other points are fixed to joins nothing.
 class ConnectedParts {
  public:
-  /// `model` must outlive this.
-  explicit ConnectedParts(const Model& model);
+  /// `model` must outlive this. Without `by_forces` only rows and masses join.
+  explicit ConnectedParts(const Model& model, bool by_forces = true);
 
   /// Free points of each part that no driver touches.
   [[nodiscard]] std::vector<std::vector<int>> undriven();

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "model_math/kinematics.hpp"
+#include "run/scene_distance.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -72,6 +73,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
     parts_.push_back({std::move(part), {}, is_driven});
   }
   if (!is_needed()) return;
+  find_lengths();
   matrices_.emplace(scene.model, std::move(matrices));
   now_.resize(matrices_->size());
   turned_.resize(now_.size(), 1.0);
@@ -79,6 +81,26 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   find_tangents(start);
   find_signs(0.0, start);
   moor(0.0, start);
+}
+
+void BranchWatch::find_lengths() {
+  std::vector<double> lengths;  // of coordinates
+  const std::vector<double> its = lengths_of_points(scene_, length_);
+  std::size_t place = 0;
+  for (const Point& point : scene_.model.points()) {
+    if (point.is_fixed()) continue;
+    const auto end = static_cast<std::size_t>(point.offset + scene_.model.dimension());
+    lengths.resize(std::max(lengths.size(), end));
+    for (auto i = static_cast<std::size_t>(point.offset); i < end; ++i) lengths[i] = its[place];
+    ++place;
+  }
+  for (Part& part : parts_) {
+    part.length = length_;
+    for (const int col : part.all.cols) {
+      part.length = std::min(part.length, lengths[static_cast<std::size_t>(col)]);
+    }
+  }
+  length_ = std::ranges::min(parts_, {}, &Part::length).length;
 }
 
 /// Of the parts that are carried.
@@ -117,7 +139,7 @@ void BranchWatch::find_signs(double t, const State& state) {
       const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
       if (!is_carried(m)) {
         turned_[m] = turned(block, state);
-        least = kStill * length_;
+        least = kStill * parts_[m].length;
       }
       double* const last = square + (size - 1) * size;
       for (std::size_t j = 0; j < size; ++j) {
@@ -200,18 +222,18 @@ std::optional<FollowedCurve> BranchWatch::follow(const Part& part, double t,
   const Model& model = scene_.model;
   const CurveEnd from{anchor_time_, &anchor_.q, part.is_carried ? &tangent_ : &anchor_.v};
   const CurveEnd to{t, &state.q, part.is_carried ? &tangent_ : &state.v};
-  const double tolerance = kApart * length_;
+  const double length = part.length, tolerance = kApart * length;
   if (!part.is_carried)
-    return follow_curve(model, part.all, part.blocks, from, to, length_, tolerance);
-  const auto back = carry_along(model, part.all, to, from, length_);
+    return follow_curve(model, part.all, part.blocks, from, to, length, tolerance);
+  const auto back = carry_along(model, part.all, to, from, length);
   if (!back) return std::nullopt;
   const CurveEnd target{from.t, &*back, to.v};
-  const FollowedCurve then = follow_curve(model, part.all, {}, from, target, length_, tolerance);
+  const FollowedCurve then = follow_curve(model, part.all, {}, from, target, length, tolerance);
   if (then.end == FollowedCurve::End::reached) return then;
-  const auto onward = carry_along(model, part.all, from, to, length_);
+  const auto onward = carry_along(model, part.all, from, to, length);
   if (!onward) return std::nullopt;
   const CurveEnd begin{to.t, &*onward, from.v};
-  return follow_curve(model, part.all, {}, begin, to, length_, tolerance);
+  return follow_curve(model, part.all, {}, begin, to, length, tolerance);
 }
 
 std::string BranchWatch::look(double t, const State& state) {
@@ -236,7 +258,7 @@ std::string BranchWatch::look(double t, const State& state) {
     switch (curve.end) {
       case FollowedCurve::End::reached:
         // Beside a singular position the other assembly is too close to tell.
-        if (!curve.crossed && (!part.blocks.empty() || curve.distance > kSame * length_)) {
+        if (!curve.crossed && (!part.blocks.empty() || curve.distance > kSame * part.length)) {
           is_certain = false;
         }
         if (curve.crossed && passage_.empty() &&

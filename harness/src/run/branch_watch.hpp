@@ -27,6 +27,8 @@ class BranchWatch {
 
   /// Whether there is a part to look at.
   [[nodiscard]] bool is_needed() const { return !parts_.empty(); }
+  /// The shortest of what the parts' errors are small against, m.
+  [[nodiscard]] double length() const { return length_; }
   /// Of the whole mechanism; 0 if nothing is wanted.
   [[nodiscard]] int freedoms() const { return freedoms_; }
   /// ClosedParts::passes_on; empty if nothing is wanted.
@@ -53,7 +55,9 @@ class BranchWatch {
     ConstraintBlock all;
     std::vector<ConstraintBlock> blocks;  // empty: one freedom
     bool is_carried = false;              // one freedom, beside drivers
+    double length = 1.0;                  // m, the least of lengths_of_points()
   };
+  void find_lengths();
   /// Into now_: -1, 1; 0: not known.
   void find_signs(double t, const State& state);
   [[nodiscard]] std::string place_of(std::size_t matrix) const;

@@ -20,6 +20,7 @@ HalfStepRun::HalfStepRun(const Scene& scene, const StepAgain::Create& create,
       simulation_(create(half)),
       state_(initial),
       length_(length),
+      lengths_(lengths_of_points(scene, length)),
       factor_(richardson_factor(half.scheme)) {
   simulation_->set_state(initial);
 }
@@ -27,18 +28,26 @@ HalfStepRun::HalfStepRun(const Scene& scene, const StepAgain::Create& create,
 void HalfStepRun::advance() {
   for (int i = 0; i < 2; ++i) {
     if (simulation_->step().status == StepStatus::factorization_failed) {
-      error_ = std::numeric_limits<double>::infinity();
+      error_ = share_ = std::numeric_limits<double>::infinity();
     }
   }
 }
 
 void HalfStepRun::compare(const State& whole) {
   simulation_->get_state(state_);
-  const double error = factor_ * largest_distance(scene_, length_, whole.q, state_.q);
-  // Not std::max, which would drop a NaN.
-  if (!(error <= error_)) {
-    error_ = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-  }
+  const auto keep_larger = [](double& largest, double value) {  // a NaN is infinite
+    if (!(value <= largest)) largest = std::isnan(value) ? HUGE_VAL : value;
+  };
+  double distance = 0.0, share = 0.0;  // squared
+  auto length = lengths_.begin();
+  const auto see = [&](const Vector3& off) {
+    const double squared = dot(off, off), its = *length++;
+    keep_larger(distance, squared);
+    keep_larger(share, squared / (its * its));
+  };
+  for_each_point(scene_, length_, see, [&](std::size_t i) { return whole.q[i] - state_.q[i]; });
+  keep_larger(error_, factor_ * std::sqrt(distance));
+  keep_larger(share_, factor_ * std::sqrt(share));
 }
 
 }  // namespace mbs

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "run/step_again.hpp"
 #include "scene/scene.hpp"
@@ -29,17 +30,21 @@ class HalfStepRun {
   /// Takes the whole-step simulation's state at the same time.
   void compare(const State& whole);
 
-  /// Largest estimated distance by largest_distance() so far, m; infinite once the
-  /// half-step simulation is lost, not a number before compare().
+  /// Largest estimated distance of a point so far, m; infinite once the half-step simulation is
+  /// lost, not a number before compare().
   [[nodiscard]] double position_error_max() const { return error_; }
+  /// The same over the length of each point, lengths_of_points().
+  [[nodiscard]] double share_max() const { return share_; }
 
  private:
   const Scene& scene_;
   std::unique_ptr<Simulation> simulation_;
   State state_;
-  double length_;  // of unit vectors, m
+  double length_;                // of unit vectors, m
+  std::vector<double> lengths_;  // of points, m
   double factor_;
   double error_ = std::numeric_limits<double>::quiet_NaN();  // nothing was compared
+  double share_ = error_;
 };
 
 }  // namespace mbs

@@ -27,17 +27,17 @@ struct RunBounds {
 /// hundredth of a rod's length.
 struct AccurateBounds {
   double position_error = 1e-2;  ///< m, where an exact solution is known
-  /// Of Judge::length(), where the error is estimated: HalfStepRun.
+  /// Of lengths_of_points(), where the error is estimated: HalfStepRun.
   double estimated_error = 1e-2;
-  /// Of Judge::length(): RunSummary::local_error_sum, of which errors are usually one to twelve
-  /// times.
+  /// Of lengths_of_points(): LocalErrors, of which errors are usually one to twelve times.
   double local_error = 3e-3;
   double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
 };
 
 /// What errors are small against where the exact motion is not known, m: the length of the part
-/// that turns fastest, at most the extent.
+/// that turns fastest, at most the extent. (Points of other parts have their own if it is shorter:
+/// lengths_of_points().)
 double judged_length(const Model& model);
 
 /// Figures of one state, and the worst so far; NaN never passes for small.

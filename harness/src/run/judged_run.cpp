@@ -198,7 +198,7 @@ bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
 long JudgedRun::looked_after(const State& present) const {
   constexpr double kWay = 0.5;  // of the length
   constexpr long kMost = 256;
-  const double length = judge_.length();
+  const double length = watch_.length();
   double speed = 0.0, acceleration = 0.0;
   for (const double v : present.v) speed = std::max(speed, std::abs(v));
   for (const double a : present.a) acceleration = std::max(acceleration, std::abs(a));
@@ -285,7 +285,7 @@ void JudgedRun::take_exception() {
 void JudgedRun::conclude() {
   is_over_ = true;
   if (adds_local_errors_) {
-    summary_.local_error_sum = judge_.ahead_max() + local_errors_.sum();
+    summary_.local_error_sum = judge_.ahead_max() + local_errors_.worst().sum;
   }
   const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
   if (share > RunBounds{}.pass_limit_share) {
@@ -325,18 +325,22 @@ void JudgedRun::conclude() {
 }
 
 std::string JudgedRun::beyond_estimates() const {
-  const double allowed = AccurateBounds{}.estimated_error * judge_.length();
+  constexpr AccurateBounds accurate;
   if (half_ && !std::isfinite(half_->position_error_max())) {
     return "the run with half the step was lost, so that the position error is not known";
   }
-  if (half_ && !(half_->position_error_max() <= allowed)) {
-    return fmt::format("estimated position error {:.1e} m (ok to {:.2g})",
-                       half_->position_error_max(), allowed);
+  if (half_ && !(half_->share_max() <= accurate.estimated_error)) {
+    return fmt::format(
+        "estimated position error {:.1e} m at most, {:.2g} % of a length at most (ok to {:g} %)",
+        half_->position_error_max(), 100 * half_->share_max(), 100 * accurate.estimated_error);
   }
-  const double local_allowed = AccurateBounds{}.local_error * judge_.length();
-  if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
-  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g})", *summary_.local_error_sum,
-                     local_allowed);
+  if (!summary_.local_error_sum) return "";
+  const LocalErrors::Worst worst = local_errors_.worst();
+  const double share = judge_.ahead_max() / judge_.length() + worst.share;
+  if (share <= accurate.local_error) return "";
+  return fmt::format("local errors add up to {:.1e} m, {:.2g} % of the length at {} (ok to {:g} %)",
+                     *summary_.local_error_sum, 100 * share, printable(worst.point, 60),
+                     100 * accurate.local_error);
 }
 
 RunSummary JudgedRun::finish() {

@@ -23,14 +23,17 @@ LocalErrors::LocalErrors(const Scene& scene, double length, const std::vector<bo
   const auto is_of_such = [&](const Point& point) {
     return !point.is_fixed() && passes_on[static_cast<std::size_t>(point.offset)];
   };
+  const std::vector<double> lengths = lengths_of_points(scene, length);
+  auto its = lengths.begin();
   for (const Point& point : points) {
-    if (!point.is_fixed()) points_.push_back({.passes_on = is_of_such(point)});
+    if (!point.is_fixed()) points_.push_back({.length = *its++, .passes_on = is_of_such(point)});
   }
   for (const Marker& marker : scene.elements.markers) {
     const auto is_on_such = [&](const Marker::Part& part) {
       return is_of_such(points[static_cast<std::size_t>(part.point)]);
     };
-    points_.push_back({.passes_on = std::ranges::any_of(marker.parts, is_on_such)});
+    points_.push_back(
+        {.length = *its++, .passes_on = std::ranges::any_of(marker.parts, is_on_such)});
   }
 }
 
@@ -82,14 +85,25 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
                  entries_of(v));
 }
 
-double LocalErrors::sum() const {
-  double largest = 0.0;
-  for (const Sums& sums : points_) {
-    const double total = sums.lag + sums.way + std::sqrt(time_ * sums.shift);
-    // Not std::max, which would drop a NaN.
-    if (!(total <= largest)) largest = std::isnan(total) ? HUGE_VAL : total;
+LocalErrors::Worst LocalErrors::worst() const {
+  Worst result;
+  std::size_t worst = 0;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Sums& sums = points_[k];
+    double sum = sums.lag + sums.way + std::sqrt(time_ * sums.shift);
+    if (std::isnan(sum)) sum = HUGE_VAL;
+    if (sum / sums.length <= result.share) continue;
+    result.sum = sum;
+    result.share = sum / sums.length;
+    worst = k;
   }
-  return largest;
+  for (const Point& point : scene_.model.points()) {
+    if (!point.is_fixed() && worst-- == 0) result.point = point.name;
+  }
+  if (result.point.empty() && worst < scene_.elements.markers.size()) {
+    result.point = scene_.elements.markers[worst].name;
+  }
+  return result;
 }
 
 }  // namespace mbs

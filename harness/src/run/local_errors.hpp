@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "run/step_again.hpp"
@@ -25,7 +26,7 @@ namespace mbs {
 ///   LocalErrors errors(scene, judged_length(scene.model), watch.passes_on());
 ///   errors.add(off, v, 1.25e-3, 64);         // 64 steps like this one
 ///   errors.add_speed(again.error(before, after), v, 1.25e-3, 512, 0.0);
-///   double sum = errors.sum();
+///   double share = errors.worst().share;
 class LocalErrors {
  public:
   /// `scene` must outlive this; unit vectors count as `length` (m) long. `passes_on`: of each
@@ -43,11 +44,17 @@ class LocalErrors {
   void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,
                  double braked);
 
-  /// Largest lag + way + way of shifts of a point so far, m.
-  [[nodiscard]] double sum() const;
+  /// Lag + way + way of shifts so far of the point for which it is the most of its length.
+  struct Worst {
+    double sum = 0.0;    ///< m
+    double share = 0.0;  ///< of lengths_of_points()
+    std::string point = "";
+  };
+  [[nodiscard]] Worst worst() const;
 
  private:
   struct Sums {
+    double length = 1.0;  // m
     bool passes_on = false;
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples
@@ -56,7 +63,7 @@ class LocalErrors {
 
   const Scene& scene_;
   double length_;
-  std::vector<Sums> points_;
+  std::vector<Sums> points_;            // in the order of for_each_point()
   double samples_ = 0.0, steps_ = 0.0;  // m, N, without what dampers took away
   double time_ = 0.0;                   // t of shifts, s
 };

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "model_math/vector3.hpp"
 #include "scene/scene.hpp"
@@ -39,9 +40,8 @@ void for_each_point(const Scene& scene, double length, Take take, Of... of) {
   }
 }
 
-/// Largest |x_p - y_p| over these points, in the unit of x. NaN if one is. x, y: n, of the same
-/// instant.
-double largest_distance(const Scene& scene, double length, std::span<const double> x,
-                        std::span<const double> y);
+/// What errors of these points are small against, in their order, m: `length`, or that of their own
+/// part if it is shorter (part_lengths()); `length` for unit vectors.
+std::vector<double> lengths_of_points(const Scene& scene, double length);
 
 }  // namespace mbs

@@ -174,7 +174,8 @@ bool has_stiff_damper(const Model& model, double step) {
 double automatic_tolerance(const Model& model, const StepSettings& settings) {
   constexpr double kLinear = 5e5;  // beta s_mean of the penalty form, from which it hardly shows
   const double step = settings.step;
-  const double length = std::min(fastest_turning(model).length, 1.0);
+  double length = 1.0;
+  for (const double its : part_lengths(model)) length = std::min(length, its);
   const double stiffness = model.constraints() == 0 ? 0.0
                                                     : settings.penalty * step * step / 4 *
                                                           mean_constraint_eigenvalue(model);

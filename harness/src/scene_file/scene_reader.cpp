@@ -56,8 +56,8 @@ bool is_usable_name(std::string_view name) {
   const auto is_bad = [](char c) {
     return c == ',' || c == '"' || c == '\'' || static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
   };
-  return !name.empty() && name.front() != ' ' && name.back() != ' ' &&
-         std::none_of(name.begin(), name.end(), is_bad);
+  return !name.empty() && std::string_view("=+-@ ").find(name.front()) == std::string_view::npos &&
+         name.back() != ' ' && std::none_of(name.begin(), name.end(), is_bad);
 }
 
 int SceneReader::add_name(const JsonNode& node, const std::string& name, bool is_vector) {

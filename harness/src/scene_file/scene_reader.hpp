@@ -66,9 +66,10 @@ class SceneReader {
 };
 
 /// Whether a name can start the name of a CSV column: no comma, quotation mark, control character
-/// or blank at its ends.
+/// or blank at its ends, and nothing at its beginning that a spreadsheet takes for a formula.
 bool is_usable_name(std::string_view name);
 inline constexpr const char* kUsableName =
-    "a name without comma, quotation mark, control character or blank at its ends";
+    "a name without comma, quotation mark, control character or blank at its ends, and without "
+    "=, +, - or @ at its beginning";
 
 }  // namespace mbs

@@ -5,12 +5,23 @@ from scipy.stats import gmean
 
 from analysis.core import records, schema
 from analysis.core.controls import judged
-from analysis.core.files import read_object
+from analysis.core.files import StudyError, read_object
 
 RATES = {"vector_bytes": "widest vectors of the build, bytes", "flops_per_ns": "multiply-adds in the widest vectors, operations a ns",
          "divisions_per_ns": "divisions in the widest vectors, a ns",
          "add_ns": "latency of an addition, ns", "fused_ns": "latency of a multiply-add, ns", "divide_ns": "latency of a division, ns",
          "L1": "loads and stores in L1, bytes a ns", "L2": "in L2", "L3": "in L3", "memory": "in memory"}
+
+PARTS = ("map", "families")  # that are merged, and have controls
+
+
+def origins(studyset):
+    """Digests of the records of each of PARTS; StudyError if its tables are of other ones."""
+    for kept in [path for part in PARTS if (path := studyset.folder / part / schema.DIGESTS).exists()]:
+        found = schema.digest_of(schema.records_of(studyset.folder, kept.parent.name, studyset.facts["context"]))
+        if found != read_object(kept, records=str)["records"]:
+            raise StudyError(f"{kept.parent}: its tables are not those of its records: run study/figures {studyset.folder}")
+        yield found
 
 
 def rates(studyset):
@@ -25,14 +36,17 @@ def rates(studyset):
 
 def controls(studyset):
     """`judged` of a set's controls, on the map and on mechanisms."""
-    return judged(pandas.concat(table(studyset.folder, part, "controls") for part in ("map", "families")))
+    return judged(pandas.concat(table(studyset.folder, part, "controls") for part in PARTS))
 
 
 def no_evidence(studyset):
-    """Why a set says nothing: its controls failed, or those of its node; "" if they did not, or it has none."""
-    found, known = controls(studyset), studyset.facts.get("no_evidence", "")
-    return known or (f"{found['false']} of {found['pairs']} A/A controls were decided, more than chance allows"
-                     if found["pairs"] and not found["sound"] else "")
+    """Why a set says nothing: its node's controls failed, or those of the map, of mechanisms or of both, or it has none; "" if it may."""
+    tables = [table(studyset.folder, part, "controls") for part in PARTS]
+    failed = [f"{one['false']} of {one['pairs']} A/A controls were decided, more than chance allows"
+              for one in map(judged, (pandas.concat(tables), *tables)) if one["pairs"] and not one["sound"]]
+    if not any(map(len, tables)) and {*PARTS} & {*studyset.facts["parts"]}:
+        failed = ["it has no A/A controls"]
+    return studyset.facts.get("no_evidence") or next(iter(failed), "")
 
 
 def gains(sets, together=()):

@@ -23,12 +23,16 @@ def merge(arguments):
     parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: how many of its winners lie in the merged sets?")
     parser.add_argument("--other-builds", action="store_true", help="sets of other commits, libraries or changed trees too: do they say the same?")
     options = parser.parse_args(arguments)
-    if len(options.sets) < 2 or len({one.resolve() for one in options.sets}) < len(options.sets):
-        raise StudyError("needs two different sets or more")
+    if len(options.sets) < 2:
+        raise StudyError("needs two sets or more")
     sets = [opened(folder) for folder in options.sets]
     fresh = opened(options.fresh) if options.fresh else None
+    seen = {}  # {digest of records: whose}
     for one in filter(None, (*sets, fresh)):
         need_alike(sets[0], one, options.other_builds)
+        for records in machine.origins(one):
+            if (known := seen.setdefault(records, one)) is not one:
+                raise StudyError(f"{one.folder} holds records of {known.folder}: it is that set or a copy, and says nothing new")
     if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
         raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
     agreed, alone = agreement.agreements(sets)
@@ -51,7 +55,7 @@ def merge(arguments):
         spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(libraries),
         claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
     for layer, count in counts.items():
-        print(f"{agreement.LAYERS[layer]}: {sum(count.values())} common cells, {count['decided']} with one winner everywhere, "
+        print(f"{agreement.LAYERS[layer]}: {sum(count.values())} common cells, {count['decided']} with one contender among the best everywhere, "
               f"{count['several']} with several, {count['differs']} differ by machine")
         print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
     for source, (percent, cells) in spread.items():

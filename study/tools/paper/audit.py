@@ -12,9 +12,9 @@ from study.tools.store import faults
 PAPER = ROOT / "paper"
 BUILD = PAPER / "build"
 STAMP = BUILD / "set.json"
-# What may hold digits that are no number of the text: names, lengths, what is marked as given, and the study's year.
-NO_TEXT = re.compile(r"\\(?:given|val|holds|cite|label|ref|eqref|tag|input|studyfigure|studytable|longstudytable|includegraphics|texttt)(?:\[[^]]*\])?\{(?:[^{}]|\{[^{}]*\})*\}"
-                     r"|\\(?:setlength|renewcommand)\{[^{}]*\}(?:\{[^{}]*\})?|[\^_]\{?[0-9]\}?|(?<!\d)2008(?!\d)")
+# What may hold digits that are no number of the text: names (none begins with a digit), lengths, what is marked as given, and the study's year.
+NO_TEXT = re.compile(r"\\(?:given|val|holds|cite|label|ref|eqref|tag|input|studyfigure|studytable|longstudytable|includegraphics|texttt(?!\{\W*\d))"
+                     r"(?:\[[^]]*\])?\{(?:[^{}]|\{[^{}]*\})*\}|\\(?:setlength|renewcommand)\{[^{}]*\}(?:\{[^{}]*\})?|[\^_]\{?\d\}?|(?<!\d)2008(?!\d)")
 EQUATION = re.compile(r"\\begin\{equation\}(.*?)\\end\{equation\}", re.S)  # whose coefficients have one digit
 EITHER = re.compile(r"\\either\{([\w.]+)\}")
 USED = {"value": re.compile(r"\\val\{([^{}]*)\}"), "holds": re.compile(r"\\holds\{([^{}]*)\}"), "figure": re.compile(r"\\studyfigure\{([^{}]*)\}"),

@@ -154,8 +154,8 @@ def _compiled(known):
 
 def _batches(known):
     rows = known.tables("limit")["held"].loc[lambda rows: rows.what.str.contains("batches") & (rows.verdict != limits.NOT_MEASURED)]
-    kept = rows.verdict.isin([limits.HELD, limits.PARTLY])
-    return (bool(kept.all()) if len(rows) else None), "; ".join(
+    verdicts = set(rows.verdict)  # what is held where it was measured is not known of all
+    return (True if verdicts == {limits.HELD} else None if verdicts <= {limits.HELD, limits.PARTLY} else False), "; ".join(
         f"{row.sign} {number(row.bound)}; here {between(row.worst, row.low, row.high)}" for row in rows.itertuples())
 
 

@@ -74,10 +74,12 @@ def build():
     if done.returncode:
         said = [line for line in done.stdout.splitlines() if line.startswith("!") or ".tex:" in line]
         raise StudyError("LaTeX failed: " + "; ".join(said[:3] or done.stdout.splitlines()[-3:]) + f" (log: {audit.BUILD / 'paper.log'})")
-    found = re.search(r"Output written on .*?\((\d+) pages", (audit.BUILD / "paper.log").read_text(encoding="utf-8", errors="replace"), re.S)
-    pages = int(found[1]) if found else 0
-    print(f"paper: {audit.BUILD / 'paper.pdf'}, {pages} pages" + ("" if LEAST <= pages <= MOST else f": it should have {LEAST} to {MOST}"))
-    return 0
+    log = (audit.BUILD / "paper.log").read_text(encoding="utf-8", errors="replace")
+    pages = int(next(iter(re.findall(r"Output written on .*?\((\d+) pages?", log, re.S)), 0))
+    wrong = re.findall(r"^LaTeX Warning: ((?:Reference|Citation) .* undefined)", log, re.M)
+    wrong += [f"it should have {LEAST} to {MOST} pages"] * (not LEAST <= pages <= MOST)
+    print(f"paper: {audit.BUILD / 'paper.pdf'}, {pages} pages", *wrong, sep="\npaper: ")
+    return int(bool(wrong))
 
 
 MACROS = r"""% Made by study/paper: the numbers and claims of its set.

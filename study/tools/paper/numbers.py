@@ -252,7 +252,8 @@ def _elsewhere(others):
 
 
 def _default(rows):
-    return f"{rows.rule.iloc[0]}: {number(rows['mean'].iloc[0])} times on average, {number(rows.worst.iloc[0])} at worst"
+    least = "at least " if rows.smaller.iloc[0] > 0 else ""
+    return f"{rows.rule.iloc[0]}: {least}{number(rows['mean'].iloc[0])} times on average, {number(rows.worst.iloc[0])} at worst"
 
 
 def _error(known):

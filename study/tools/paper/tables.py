@@ -171,7 +171,7 @@ def leaves(known):
 def defaults(known):
     """Defaults of other tools, as rules for our contenders."""
     found = known.tables("families")["defaults"].dropna(subset=["mean"]).sort_values("mean").to_dict("records")
-    rows = [(row["rule"], row["chooses"], ("about " if row["rough"] else "") + number(row["mean"]), number(row["worst"])) for row in found]
+    rows = [(row["rule"], row["chooses"], ("at least " if row["smaller"] > 0 else "about " if row["rough"] else "") + number(row["mean"]), number(row["worst"])) for row in found]
     rows = rows[:DEFAULTS - 2] + rows[-2:] if len(rows) > DEFAULTS else rows
     return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
 

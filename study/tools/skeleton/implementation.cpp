@@ -5,11 +5,11 @@
 #include <string>
 
 #include "simulation.hpp"
-
+@ILAVER@
 namespace mbs::@NAME@ {
 namespace {
 
-std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+@LAPACK@std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
   return std::make_unique<Stepper>(model, settings);
 }
 
@@ -24,7 +24,7 @@ Implementation implementation() {
       .variants = {{.name = "first",
                     .description = "TODO: what this variant does in a line",
                     .create = create,
-                    .dense = true,
+                    .dense = true,  // without it, if T is not stored whole
                     .serves = {}}},  // terms and settings beyond the paper's step: mbs/terms.hpp
   };
 }

@@ -5,10 +5,13 @@
 
 namespace mbs::@NAME@ {
 
+constexpr std::size_t kMostEntries = (std::size_t{1} << 31) / sizeof(double);
+
 Stepper::Stepper(const Model& model, const StepSettings& settings)
     : Simulation(model, settings), model_(model), settings_(settings) {
   const auto n = static_cast<std::size_t>(model.variables());
   const auto m = static_cast<std::size_t>(model.constraints());
+  if (n * n > kMostEntries) throw Unsupported("T would take more than 2 GiB");  // while it is dense
   Phi_.resize(m);
   Phi_q_.resize(m * n);
   f_.resize(n);
