@@ -66,7 +66,7 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
 #pragma GCC unroll 8
   for (int j = 0; j < P; ++j) {
     store<F, N>(factors + j * N, m[j]);
-    scale[j] = inverse[j];
+    set_number(scale, j, inverse[j]);
     z += m[j] * y[panel.first + j];
   }
   store_transposed<F, P, P, N>(m, factors + P * N);
@@ -156,7 +156,9 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
     if (L > 4 && i + count <= panel.following) {
       store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - first_lanes<F, L>(sum, count));
     } else {
-      for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
+      alignas(sizeof(W)) F numbers[L];
+      store<F, L>(numbers, sum);
+      for (int l = 0; l < count; ++l) y[rows[i + l]] -= numbers[l];
     }
   }
 }

@@ -14,13 +14,75 @@ struct Short {
   using Type __attribute__((vector_size(N * sizeof(F)))) = F;
   using Loose __attribute__((vector_size(N * sizeof(F)), aligned(sizeof(F)), may_alias)) = F;
 };
+/// Eight doubles in two registers. In one vector that no register holds they would lie in memory,
+/// where what follows waits for each number that is put into it.
+struct Halves {
+  using Four = Short<double, 4>::Type;
+  Four low, high;
+
+  double operator[](int i) const { return i < 4 ? low[i] : high[i - 4]; }
+  Halves& operator+=(const Halves& b) { return low += b.low, high += b.high, *this; }
+  Halves& operator-=(const Halves& b) { return low -= b.low, high -= b.high, *this; }
+  Halves& operator*=(const Halves& b) { return low *= b.low, high *= b.high, *this; }
+  Halves& operator*=(double x) { return low *= x, high *= x, *this; }
+};
+inline Halves operator+(Halves a, const Halves& b) { return a += b; }
+inline Halves operator-(Halves a, const Halves& b) { return a -= b; }
+inline Halves operator*(Halves a, const Halves& b) { return a *= b; }
+inline Halves operator*(Halves a, double x) { return a *= x; }
+#if !defined(__AVX512F__)
+template <>
+struct Short<double, 8> {
+  using Type = Halves;
+};
+#endif
+
 template <typename F, int N>
 typename Short<F, N>::Type load(const F* x) {
-  return *reinterpret_cast<const typename Short<F, N>::Loose*>(x);
+  if constexpr (std::is_same_v<typename Short<F, N>::Type, Halves>) {
+    return {load<F, 4>(x), load<F, 4>(x + 4)};
+  } else {
+    return *reinterpret_cast<const typename Short<F, N>::Loose*>(x);
+  }
 }
 template <typename F, int N>
 void store(F* x, const typename Short<F, N>::Type& v) {
-  *reinterpret_cast<typename Short<F, N>::Loose*>(x) = v;
+  if constexpr (std::is_same_v<typename Short<F, N>::Type, Halves>) {
+    store<F, 4>(x, v.low);
+    store<F, 4>(x + 4, v.high);
+  } else {
+    *reinterpret_cast<typename Short<F, N>::Loose*>(x) = v;
+  }
+}
+
+/// v[i] = x.
+template <typename V, typename F>
+inline void set_number(V& v, int i, F x) {
+  if constexpr (!std::is_same_v<V, Halves>) {
+    v[i] = x;
+  } else if (i < 4) {
+    v.low[i] = x;
+  } else {
+    v.high[i - 4] = x;
+  }
+}
+
+/// Four of eight numbers.
+template <typename V>
+inline auto low_half(const V& v) {
+  if constexpr (std::is_same_v<V, Halves>) {
+    return v.low;
+  } else {
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+  }
+}
+template <typename V>
+inline auto high_half(const V& v) {
+  if constexpr (std::is_same_v<V, Halves>) {
+    return v.high;
+  } else {
+    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  }
 }
 
 /// Lanes of a vector for `columns` pivots, or for that many rows below them.
@@ -34,12 +96,17 @@ inline constexpr int kWidest = std::min<int>(8, 8 * kRegisterDoubles / sizeof(F)
 template <typename F, int N>
 typename Short<F, N>::Type first_lanes_or(const typename Short<F, N>::Type& v,
                                           const typename Short<F, N>::Type& others, int count) {
-  using Index = std::conditional_t<sizeof(F) == 8, long long, int>;
-  using Lanes __attribute__((vector_size(N * sizeof(F)))) = Index;
-  Lanes lane;
+  if constexpr (std::is_same_v<typename Short<F, N>::Type, Halves>) {
+    return {first_lanes_or<F, 4>(v.low, others.low, count),
+            first_lanes_or<F, 4>(v.high, others.high, count - 4)};
+  } else {
+    using Index = std::conditional_t<sizeof(F) == 8, long long, int>;
+    using Lanes __attribute__((vector_size(N * sizeof(F)))) = Index;
+    Lanes lane;
 #pragma GCC unroll 8
-  for (int i = 0; i < N; ++i) lane[i] = i;
-  return lane < static_cast<Index>(count) ? v : others;
+    for (int i = 0; i < N; ++i) lane[i] = i;
+    return lane < static_cast<Index>(count) ? v : others;
+  }
 }
 /// v with zeros behind its first `count` lanes.
 template <typename F, int N>
@@ -54,8 +121,8 @@ inline void store_first(F* x, const V& v) {
   if constexpr (P == N) {
     store<F, N>(x, v);
   } else if constexpr (N == 8 && P > 4) {
-    store<F, 4>(x, __builtin_shufflevector(v, v, 0, 1, 2, 3));
-    store_first<P - 4>(x + 4, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+    store<F, 4>(x, low_half(v));
+    store_first<P - 4>(x + 4, high_half(v));
   } else if constexpr (N == 4 && P > 2) {
     store<F, 2>(x, __builtin_shufflevector(v, v, 0, 1));
     x[2] = v[2];
@@ -74,8 +141,12 @@ inline typename Short<F, N>::Type load_first(const F* x) {
     return load<F, N>(x);
   } else if constexpr (N == 8) {
     static_assert(P > 4);
-    return __builtin_shufflevector(load<F, 4>(x), load_first<P - 4, 4>(x + 4), 0, 1, 2, 3, 4, 5, 6,
-                                   7);
+    const auto low = load<F, 4>(x), high = load_first<P - 4, 4>(x + 4);
+    if constexpr (std::is_same_v<typename Short<F, N>::Type, Halves>) {
+      return {low, high};
+    } else {
+      return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
   } else {
     typename Short<F, N>::Type v{};
 #pragma GCC unroll 4
@@ -149,14 +220,14 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
 #pragma GCC unroll 8
   for (int j = 0; j < P; ++j) {
     m[j] = V{};
-    m[j][j] = F(1);
+    set_number(m[j], j, F(1));
   }
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
     V column = l[k];
 #pragma GCC unroll 8
     for (int i = 0; i < static_cast<int>(sizeof(V) / sizeof(F)); ++i) {
-      if (i <= k || i >= P) column[i] = F(0);
+      if (i <= k || i >= P) set_number(column, i, F(0));
     }
 #pragma GCC unroll 8
     for (int j = 0; j <= k; ++j) m[j] -= column * m[j][k];
@@ -201,7 +272,7 @@ inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
     for (int j = 0; j < 8; ++j) {
       F sum = c[j][0];
       for (int i = 1; i < static_cast<int>(sizeof(V) / sizeof(F)); ++i) sum += c[j][i];
-      sums[j] = sum;
+      set_number(sums, j, sum);
     }
   }
   return sums;
@@ -226,7 +297,7 @@ inline void store_four(const V& c0, const V& c1, const V& c2, const V& c3, int c
 template <typename F, int P, int L, int N, typename V>
 inline void store_transposed(const V (&c)[P], F* rows) {
   constexpr int kLanes = sizeof(V) / sizeof(F);
-  if constexpr (kLanes == 8 && P > 4) {
+  if constexpr (kLanes == 8 && P > 4 && !std::is_same_v<V, Halves>) {
     V a[8], b[8];
 #pragma GCC unroll 4
     for (int i = 0; i < 8; i += 2) {
@@ -265,8 +336,7 @@ inline void store_transposed(const V (&c)[P], F* rows) {
           if constexpr (kLanes == 4) {
             part[k] = column;
           } else {
-            part[k] = from == 0 ? __builtin_shufflevector(column, column, 0, 1, 2, 3)
-                                : __builtin_shufflevector(column, column, 4, 5, 6, 7);
+            part[k] = from == 0 ? low_half(column) : high_half(column);
           }
         }
         store_four<N>(part[0], part[1], part[2], part[3], L - from, rows + from * N + j);

@@ -251,7 +251,7 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
   for (int j = 0; j < P; ++j) {
     store<F, kPanel>(block + j * kPanel, l[j]);
     store<F, kPanel>(factors + j * kPanel, m[j]);
-    scale[j] = inverse[j];
+    set_number(scale, j, inverse[j]);
     z += m[j] * z_of[j];
   }
   store_transposed<F, P, P, kPanel>(m, factors + kBlock);
