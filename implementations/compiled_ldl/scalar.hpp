@@ -1,5 +1,5 @@
-// What a program computes with: double, float, or eight doubles side by side, one a simulation; how
-// many doubles a register holds.
+// What a program computes with: double, float, or a register of doubles side by side, one a
+// simulation; how many doubles a register holds.
 #pragma once
 
 #include <cmath>
@@ -18,10 +18,10 @@ inline constexpr int kRegisterDoubles = 4;
 inline constexpr int kRegisterDoubles = 2;
 #endif
 
-/// Eight doubles, one of each of eight simulations.
+/// As many doubles as a register holds, one of each of so many simulations.
 struct Lanes {
-  static constexpr int kCount = 8;
-  using Vector __attribute__((vector_size(64), may_alias)) = double;
+  static constexpr int kCount = kRegisterDoubles;
+  using Vector __attribute__((vector_size(8 * kRegisterDoubles), may_alias)) = double;
   Vector v;
 
   Lanes() = default;
@@ -84,7 +84,7 @@ inline float larger(float a, float b) { return b > a ? b : a; }
 inline Lanes larger(const Lanes& a, const Lanes& b) { return Lanes::of(b.v > a.v ? b.v : a.v); }
 
 /// True (all bits) in some of the lanes.
-using LaneMask = long long __attribute__((vector_size(64)));
+using LaneMask = long long __attribute__((vector_size(8 * kRegisterDoubles)));
 inline bool any(const LaneMask& mask) {
   long long all = 0;
   for (int i = 0; i < Lanes::kCount; ++i) all |= mask[i];

@@ -1,4 +1,4 @@
-// A model, or eight of the same shape, on the rows of a program.
+// A model, or several of the same shape, on the rows of a program.
 #pragma once
 
 #include <algorithm>

@@ -18,7 +18,7 @@ std::unique_ptr<Simulation> create_mixed(const Model& model, const StepSettings&
 /// has too many coordinates, or the settings are not the default ones.
 std::unique_ptr<Simulation> create_small(const Model& model, const StepSettings& settings);
 
-/// Many of one pattern at once, eight side by side in the lanes of a vector. Throws Unsupported
+/// Many of one pattern at once, side by side in the lanes of a register. Throws Unsupported
 /// unless the scheme is the default one in double precision, with lambda updated and the matrix,
 /// without geometric stiffness, factorized every pass.
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,

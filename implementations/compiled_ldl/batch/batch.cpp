@@ -1,4 +1,4 @@
-// Batches: groups of eight lanes one after the other.
+// Batches: groups of lanes one after the other.
 #include "simulations.hpp"
 
 #include "batch/lane_group.hpp"

@@ -1,4 +1,4 @@
-// Up to eight simulations side by side: "The step" with each lane stopping at its own pass.
+// Simulations side by side, one a lane: "The step" with each lane stopping at its own pass.
 #pragma once
 
 #include "system.hpp"

@@ -1,4 +1,4 @@
-// The numbers of a program's fronts, for eight simulations side by side: block L D Lᵀ.
+// The numbers of a program's fronts, for simulations side by side: block L D Lᵀ.
 #pragma once
 
 #include <algorithm>
