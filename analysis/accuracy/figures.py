@@ -63,9 +63,7 @@ def work(rows, won, look, unit, title):
         ratios.legend(*axes.get_legend_handles_labels(), fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
         axes.set_xlabel("computation for a simulated second, s")
         axes.grid(True)
-    drawn = [pair for pair in zip(panels, below) if pair[0].axison]
-    if drawn:
-        first, lower = drawn[0]
+    for first, lower in [pair for pair in zip(panels, below) if pair[0].axison][:1]:  # which all others share their axes with
         first.set_ylabel(f"error, {unit}")
         lower.set(yscale="log", ylabel="time ÷ the least at that error")
         lower.set_ylim(0.95, min(lower.get_ylim()[1], SHOWN))
@@ -139,14 +137,12 @@ def regions(winners, look):
         rows = winners[winners.layer == layer]
         for row in rows.itertuples():
             _cell(axes, row, list(scenes.scene).index(row.scene), errors.index(row.required), look)
-        axes.set(xlim=(0, len(scenes)), ylim=(0, len(errors)))
+        axes.set(xlim=(0, len(scenes)), ylim=(0, len(errors)), ylabel="error at most", title=f"N-four-bar, fastest of {TITLES[layer]}")
         axes.set_xticks([place + 0.5 for place in range(len(scenes))], [
             f"n = {one.variables:.0f}\n" + ("own fill" if one.fill_asked != one.fill_asked else f"fill {one.fill_asked:.0%}")
             for one in scenes.itertuples()])
         axes.set_yticks([place + 0.5 for place in range(len(errors))], [f"{number(error)} m" for error in errors])
-        axes.set_ylabel("error at most")
         axes.tick_params(length=0)
-        axes.set_title(f"N-four-bar, fastest of {TITLES[layer]}")
         axes.legend(handles=[*_legend(rows, look)], loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
     return figure
 

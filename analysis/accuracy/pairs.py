@@ -21,13 +21,11 @@ def table(scene, made, measured):
     own = made[(made.step / STEP - 1).abs() < 1e-6].sort_values("duration", kind="stable")
     runs = {(run["implementation"], run["setting"]): run for run in own.to_dict("records")}  # the longest
     mine = measured.loc[(measured.role == "pair") & (measured.status != "dropped"), measured.columns.intersection([*USED, "layout"])]
-    found = []
-    for kind, both in ((kind, both) for kind, pairs in PAIRS.items() for both in pairs):
-        for name, rows in mine[mine.setting.isin(both)].groupby("implementation", sort=False):
-            if rows.setting.nunique() == 2:
-                found.append({"scene": scene, "kind": kind, "first": both[0], "second": both[1], "implementation": name}
-                             | _row(rows, [runs.get((name, setting)) for setting in both], both))
-    return pandas.DataFrame(found)
+    return pandas.DataFrame([
+        {"scene": scene, "kind": kind, "first": both[0], "second": both[1], "implementation": name}
+        | _row(rows, [runs.get((name, setting)) for setting in both], both)
+        for kind, pairs in PAIRS.items() for both in pairs
+        for name, rows in mine[mine.setting.isin(both)].groupby("implementation", sort=False) if rows.setting.nunique() == 2])
 
 
 def _row(rows, runs, both):
@@ -39,8 +37,7 @@ def _row(rows, runs, both):
              "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
              "reason": why, "record": " ".join(dict.fromkeys(rows.record))}
     for place, setting, run in zip(("first", "second"), both, runs):
-        mine = rows[(rows.setting == setting) & (rows.status == "ok")]
-        found[f"{place}_us"] = mine.step_us.median()
+        found[f"{place}_us"] = rows.step_us[(rows.setting == setting) & (rows.status == "ok")].median()
         if run:
             found |= {f"{place}_{key}": run[key] for key in ("status", "error", "passes", "factorizations", "duration")}
             found[f"{place}_class"] = min((one for one in CLASSES if run["error"] <= one), default=None)

@@ -6,6 +6,7 @@ import numpy
 import pandas
 
 from analysis.core import timing
+from analysis.core.gather import gather
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.accuracy import subjects
 
@@ -24,9 +25,7 @@ def setting_of(record):
 def runs(records, subject, known):
     """A row for each untimed run ("run/SETTING"). `known`: the subject's Reference, or None where it has none."""
     rows = []
-    for record in records:
-        if not record.role.startswith("run/"):
-            continue
+    for record in (one for one in records if one.role.startswith("run/")):
         status, reason = of_run(record)
         row = {"scene": record.cell["scene"], "implementation": record.cell["contenders"][0], "setting": setting_of(record),
                "step": record.option("--step"), "duration": record.option("--duration"), "status": status,
@@ -57,10 +56,7 @@ def timed(records):
 def points(made, measured):
     """A row for each point that has a run or a time. `made`, `measured`: what `runs` and `timed` give."""
     own = {_key(row): row for row in made.sort_values("duration", kind="stable").to_dict("records")}
-    others = {}  # by setting and step: a run whose error is known
-    for (_, _, *point), row in own.items():
-        if row["error"] == row["error"]:
-            others.setdefault(tuple(point), row)
+    others = {key[2:]: row for key, row in reversed(own.items()) if row["error"] == row["error"]}  # by setting and step: the first
     times, rows = _processes(measured, ROLES), []
     for key in dict.fromkeys([*own, *times]):
         row = dict(zip(KEY, key))
@@ -85,10 +81,8 @@ def _key(row):
 
 def _processes(measured, roles):
     """{key: its rows, without what the budget left out}"""
-    found, asked = {}, measured.role.isin(list(roles)) & (measured.status != "dropped")
-    for row in measured.loc[asked, measured.columns.intersection(USED)].to_dict("records"):
-        found.setdefault(_key(row), []).append(row)
-    return found
+    asked = measured.role.isin(list(roles)) & (measured.status != "dropped")
+    return gather((_key(row), row) for row in measured.loc[asked, measured.columns.intersection(USED)].to_dict("records"))
 
 
 def _time(rows, row):

@@ -45,11 +45,9 @@ def own_fill(winners):
 def of_layer(rows, layer):
     """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
     (who, often), (setting, with_it) = (next(iter(names.value_counts().items())) for names in (rows.implementation, rows.setting))
-    settled = int(rows.settled.sum())
     text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
-            f"{settled} of these are settled. The best setting is most often {setting}, in {with_it}.")
-    largest = rows[rows.variables == rows.variables.max()].sort_values("required")
-    if len(largest) > 1:
+            f"{int(rows.settled.sum())} of these are settled. The best setting is most often {setting}, in {with_it}.")
+    if len(largest := rows[rows.variables == rows.variables.max()].sort_values("required")) > 1:
         fine, coarse = largest.iloc[0], largest.iloc[-1]
         text += (f" With n = {fine.variables:.0f}, {number(fine.required)} m instead of {number(coarse.required)} m takes "
                  f"{number(fine.time / coarse.time, 2)} times as long.")
@@ -75,8 +73,7 @@ def of_forms(table):
         return []
     least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
     said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
-    per_pass = ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()
-    if len(per_pass):
+    if len(per_pass := ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()):
         said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
                     "number of passes.")
     return said
@@ -118,8 +115,7 @@ def reuse_rows(table):
 
 
 def of_reuse(table):
-    rows = reuse_rows(table)
-    if not rows:
+    if not (rows := reuse_rows(table)):
         return []
     largest, quickest = max(rows, key=lambda row: row["saved"]), min(rows, key=lambda row: row["ratio"])
     said = (f"Of the settings that reuse factors {largest['second']} saves the most factorizations, "

@@ -12,7 +12,6 @@ from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, of_run
 from study.scenes import metric
 from study.scenes.mechanics import TOLERANCE
-from study.scenes.metric import extrapolate
 from study.scenes.problems import read_list
 from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
 
@@ -88,7 +87,7 @@ def reference(subject, runs=()):
         lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
         if lost or len(runs) < 3:
             raise StudyError(": ".join(lost) if lost else "its runs were not made")
-        less, known = ({column: extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
+        less, known = ({column: metric.extrapolate(*(numpy.array(one.series[column]) for one in both)) for column in both[0].series if column != "t"}
                        for both in zip(runs, runs[1:]))
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
     else:

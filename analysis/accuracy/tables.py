@@ -12,8 +12,7 @@ def build(records, view):
     found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": []}
     for column, (kind, entry) in subjects.columns(view.settings).items():
         subject = subjects.of(kind, entry, view.settings)
-        mine = [record for record in records if record.column == column]
-        if not mine:
+        if not (mine := [record for record in records if record.column == column]):
             continue
         known, row = reference_of(subject, mine)
         found["references"].append(row)

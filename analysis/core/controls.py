@@ -5,7 +5,6 @@ import math
 from scipy import special
 
 from analysis.core import timing
-from analysis.core.timing import CONFIDENCE, TWIN, disturbed
 
 FALSE = 0.01  # a run is no evidence if its share of false decisions would be found by chance so seldom
 
@@ -15,8 +14,8 @@ def controls(timed):
     decided: the interval excludes 1."""
     for scene, group in timed[timed.status == "ok"].groupby("scene"):
         paired = timing.Paired(group)
-        for twin in sorted(name for name in paired.logs if name.endswith(TWIN)):
-            name = twin.removesuffix(TWIN)
+        for twin in sorted(name for name in paired.logs if name.endswith(timing.TWIN)):
+            name = twin.removesuffix(timing.TWIN)
             found = timing.ratio(paired, twin, name)
             yield {"scene": scene, "implementation": name, **found.columns(), "decided": found.low > 1 or found.high < 1,
                    "record": " ".join(group[group.implementation == twin].record)}
@@ -26,7 +25,7 @@ def judged(table):
     """{"pairs", "false", "widest", "chance", "sound"} of `controls`: how many were decided though nothing differs, the ratio
     furthest from 1, and how likely so many are by chance."""
     pairs, false = len(table), int(table.decided.sum()) if len(table) else 0
-    chance = float(special.bdtrc(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan  # scipy.stats takes as long to load as all else
+    chance = float(special.bdtrc(false - 1, pairs, 1 - timing.CONFIDENCE)) if pairs else math.nan  # scipy.stats takes as long to load as all else
     widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
     return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
 
@@ -36,7 +35,7 @@ def disturbance(records):
     share of the processors that the host took; [least, largest] frequency. None where nothing tells it."""
     timed = [one for one in records if one.cell.get("timed") and one.done and (one.machine or one.cell["kind"] == "bench")]
     steal, mhz = ([one.machine[key] for one in timed if one.machine.get(key) is not None] for key in ("steal", "mhz"))
-    return {"processes": len(timed), "disturbed": sum(map(disturbed, timed)), "steal": max(steal, default=None),
+    return {"processes": len(timed), "disturbed": sum(map(timing.disturbed, timed)), "steal": max(steal, default=None),
             "mhz": [min(mhz), max(mhz)] if mhz else None}
 
 

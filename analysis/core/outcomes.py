@@ -9,9 +9,7 @@ SAME = 0.02  # errors that differ by so little are those of one motion
 
 def of_run(record):
     """(status, reason) of a record of `mbs simulate`: the outcome, or why there is none."""
-    if not record.done:
-        return record.status, record.reason
-    return record.output["status"], record.output["status_reason"]
+    return (record.output["status"], record.output["status_reason"]) if record.done else (record.status, record.reason)
 
 
 def finished(rows):

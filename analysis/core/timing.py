@@ -145,8 +145,7 @@ def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     layout, or process, there is no interval: it reaches from 0 to infinity."""
     rows = paired(rows)
-    logs = [numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))]
-    if not logs:
+    if not (logs := [numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))]):
         return NONE
     if len(logs) == 1:
         return Ratio(math.exp(logs[0]), 0.0, math.inf)
@@ -218,11 +217,9 @@ def by_time(winner, ratios):
 def rank(rows, names=None):
     """The Ranking of one scene's rows among `names` (all of their names); None if none of them was timed."""
     rows = paired(rows)
-    chosen = [name for name in rows.logs if (names is None or name in names) and name not in rows.lost]
-    if not chosen:
+    if not (chosen := [name for name in rows.logs if (names is None or name in names) and name not in rows.lost]):
         return None
-    first = chosen[0]
-    to_first = {name: ratio(rows, name, first).value for name in chosen}
+    to_first = {name: ratio(rows, name, chosen[0]).value for name in chosen}
     order = sorted((name for name in chosen if not math.isnan(to_first[name])), key=to_first.get)
     winner, tried = order[0], set()
     while True:  # they may share other processes with the winner than with the first
@@ -240,8 +237,7 @@ def within(paired, first, second):
     """(low, high) of the ratio in these very layouts of the program, at this place of the fill: by what processes of one layout differ
     by, or, where each has one process, by its rounds. (NaN, NaN) where neither tells it."""
     groups = by_layout(paired, log_ratios(paired, first, second))
-    freedom = sum(map(len, groups)) - len(groups)
-    if freedom:
+    if freedom := sum(map(len, groups)) - len(groups):
         variance = sum(float(numpy.var(one)) * len(one) for one in groups) / freedom
     else:
         _, variance = rounds(paired, first, second)
@@ -278,9 +274,8 @@ def holm(rows):
 def differing(rows):
     """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
     contenders (others are copies of one code) stands; without one nobody can be trusted."""
-    totals = {}
-    for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
-        totals.setdefault(row.implementation, set()).add(row.passes)
+    good = rows[(rows.status == "ok") & (rows.implementation != NULL)]
+    totals = {name: set(values) for name, values in gather((row.implementation, row.passes) for row in good.itertuples()).items()}
     ranked = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name).most_common(2)
     right = None if not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1] else ranked[0][0]
     return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else

@@ -24,11 +24,8 @@ def of_side(ours, side, own):
 
 def candidates(engines, ours, own):
     """Rows, of one subject, that may be the fastest of theirs at some error, and those of ours that may be at these."""
-    theirs, mine = _candidates(engines), set()
-    for error in engines.error[theirs]:
-        for side in SIDES:
-            done = finished(of_side(ours, side, own))
-            mine |= set(_near(done[done.error <= error]))
+    theirs, sides = _candidates(engines), [finished(of_side(ours, side, own)) for side in SIDES]
+    mine = {place for error in engines.error[theirs] for done in sides for place in _near(done[done.error <= error])}
     return engines.loc[theirs], ours.loc[sorted(mine)]
 
 

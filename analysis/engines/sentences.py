@@ -37,8 +37,7 @@ def of_side(table, side):
 def of_andrews(table):
     """A sentence for each solver that simulated Andrews' mechanism: its time over that of each side of ours."""
     for engine, rows in table[table.subject == ANDREWS].groupby("engine", sort=False):
-        compared = [text for side in SIDES for text in [_times(rows[rows.side == side], SIDES[side])] if text]
-        if compared:
+        if compared := [text for side in SIDES for text in [_times(rows[rows.side == side], SIDES[side])] if text]:
             errors = rows.engine_error
             yield (f"{title(engine)} on Andrews' mechanism, at its errors from {number(errors.max(), 2)} to "
                    f"{number(errors.min(), 2)} m, takes " + "; ".join(compared) + ".")
@@ -73,8 +72,7 @@ def of_engines(engines):
             yield f"{title(engine)}: left out, {rows.reason.iloc[0]}."
             continue
         made = rows[~rows.status.isin(NOT_MADE)]
-        lost = made[~made.status.isin(FINISHED)]
-        kinds = ", ".join(f"{count} {status}" for status, count in lost.status.value_counts().items())
+        kinds = ", ".join(f"{count} {status}" for status, count in made.status[~made.status.isin(FINISHED)].value_counts().items())
         done = finished(made)
         best = "none finished" if done.empty else (
             f"{number(done.error.min(), 2)} m is the smallest error ({subject_of(done.loc[done.error.idxmin()].subject).title})")

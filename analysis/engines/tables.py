@@ -9,8 +9,7 @@ COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "rea
 
 
 def build(records, view):
-    found = {role: frame([row(one) for one in records if one.role == role]) for role in (ENGINE, OURS, ROUND)}
-    engines, ours, rounds = map(_sorted, found.values())
+    engines, ours, rounds = (_sorted(frame([row(one) for one in records if one.role == role])) for role in (ENGINE, OURS, ROUND))
     return {"engines": engines.drop(columns=["side", "round", "key"]).rename(columns={"name": "engine"}),
             "ours": ours.drop(columns=["side", "round", "over", "key"]).rename(columns={"name": "implementation", "value": "step"}),
             "rounds": rounds[list(COLUMNS)].drop(columns=["error", "key"]), "native": pandas.DataFrame(equal_error.native(engines, rounds)),

@@ -99,10 +99,8 @@ def read(folder):
 def as_json(folder, found, number):
     """A set as the page has it. `number`: {name: its place in the page's list of names}."""
     facts, rule = facts_of(folder), folder / "families" / "rule.json"
-    times = read_object(rule, times=dict)["times"] if rule.exists() else {}
     return {"name": folder.name, "machine": facts["context"].get("cpu_model", ""), "date": facts["date"], "commit": facts["context"]["commit"],
-            "profile": facts["profile"], "times": times,
-            "mechanisms": _mechanisms(folder) if found["families"] else {},
+            "times": read_object(rule, times=dict)["times"] if rule.exists() else {}, "mechanisms": _mechanisms(folder) if found["families"] else {},
             "contests": [_contest(one, number) for part in ("families", "map") for one in found[part]],
             "curves": [_curve(one, number) for one in found["accuracy"]]}
 
@@ -137,11 +135,9 @@ def _contest(one, number):
 def _curve(one, number):
     points = one.points[["implementation", "setting", "step", "error", "time", "time_low", "time_high", "time_from", "record"]]
     labels = {accuracy.label(point): place for place, point in enumerate(points.to_dict("records"))}
-    rows = [[labels[row.implementation], int(row.process), row.status, None if pandas.isna(row.seconds) else _short(row.seconds)]
+    rows = [[labels[row.implementation], int(row.process), row.status, _known(row.seconds)]
             for row in one.rounds.itertuples() if row.implementation in labels]
-    known = one._asdict()
-    del known["points"], known["rounds"]
-    return known | {
+    return one._asdict() | {
         "family": family_of(one.scene), "rounds": rows,
         "points": [[number[row.implementation], row.setting, row.step, *map(_known, (row.error, row.time, row.time_low, row.time_high)),
                     row.time_from if isinstance(row.time_from, str) else None, row.record] for row in points.itertuples(index=False)]}

@@ -35,10 +35,9 @@ def rounding(cell, solutions, times):
     if not len(times) or cell.motion.accuracy:
         return cell.motion.accuracy / cell.length
     ulp = numpy.finfo(float).eps
-    moved = cell.motion.solutions(times * (1 + ulp))
     return max(
         float(distances(late, known, cell.length).max() + ulp * max(abs(values).max() for values in known.values()) / cell.length)
-        for late, known in zip(moved, solutions))
+        for late, known in zip(cell.motion.solutions(times * (1 + ulp)), solutions))
 
 
 def allowed(cell, solutions):

@@ -64,13 +64,8 @@ class TwoPendulums(namedtuple("TwoPendulums", "mass"), Motion):
 
 class Beside(namedtuple("Beside", "small"), Motion):
     """A motion, and a rod of 1 m that swings and has nothing to do with it."""
-    truth, accuracy, shortest = (property(lambda self, name=name: getattr(self.small, name)) for name in ("truth", "accuracy", "shortest"))
-
-    def solutions(self, times):
-        return self.small.solutions(times)
-
-    def clearance(self, time):
-        return self.small.clearance(time)
+    truth, accuracy, shortest, solutions, clearance = (property(lambda self, name=name: getattr(self.small, name)) for name in (
+        "truth", "accuracy", "shortest", "solutions", "clearance"))
 
     def document(self):
         found = self.small.document()

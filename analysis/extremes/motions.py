@@ -86,8 +86,7 @@ class Flat(Chain):
     or rod 0 lies still, as B0 is A1, and coupler and rod 1 swing about A1 as one (k = 3 g / (2 length))."""
 
     def solutions(self, times):
-        lone = Chain(1, self.length, self.gravity, self.rods, (1e-300,), angle=self.angle, rate=0.0)
-        [swing] = lone.solutions(times)
+        [swing] = Chain(1, self.length, self.gravity, self.rods, (1e-300,), angle=self.angle, rate=0.0).solutions(times)
         still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times), "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]
 

@@ -49,8 +49,7 @@ def _places(rows):
 
 
 def _helps(extreme):
-    shares = verdicts.by_setting(extreme)
-    if len(shares) > len(FORMS):
+    if len(shares := verdicts.by_setting(extreme)) > len(FORMS):
         told = [f"“{name}” in {right} of {runs}" for name, (right, runs) in shares.items()]
         yield {"anchor": "settings", "text": f"Where other settings were tried as well, runs are right most often with {', '.join(told[:MOST_HELPFUL])}; "
                f"with {' and '.join(told[list(shares).index(form.name)] for form in FORMS if form.name in shares)}."}

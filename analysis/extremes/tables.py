@@ -2,6 +2,7 @@
 import pandas
 
 from analysis.core import timing
+from analysis.core.gather import gather
 from analysis.extremes import battery
 
 PLAIN = ("refactor", "default")  # strategy and pivots that times are over
@@ -19,13 +20,11 @@ def _pivots(records):
     done = [record for record in records if record.done]
     names = " ".join(record.name for record in done)
     rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
-    claims = {}
-    for one in (claim for record in done for claim in record.output.get("claims", [])):
-        claims[one["claim"]] = claims.get(one["claim"], True) and bool(one["holds"])
+    claims = gather((one["claim"], one["holds"]) for record in done for one in record.output.get("claims", []))
     lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
     found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
     return {"pivots": pandas.DataFrame(found + lost),
-            "claims": pandas.DataFrame([{"claim": claim, "holds": holds, "record": names} for claim, holds in claims.items()])}
+            "claims": pandas.DataFrame([{"claim": claim, "holds": all(holds), "record": names} for claim, holds in claims.items()])}
 
 
 def _over_processes(rows):

@@ -17,9 +17,9 @@ def table(data, rests, rule, worth):
         chosen = {}
         for family, rest in rests.items():
             left = features[[data.family[scene] == family for scene in features.index]]
-            for where, name in _cases_of(rest, scheme, features, weights, worth):
+            for where, name in _cases(rest, scheme, features, weights, worth):
                 chosen |= dict.fromkeys(_inside(where, left), name)
-        for where, name in _cases_of(rule, scheme, features, weights, worth):
+        for where, name in _cases(rule, scheme, features, weights, worth):
             scenes = _inside(where, features)
             found = numpy.array([losses.loc[scene, chosen[scene]] for scene in scenes])
             known = found[~numpy.isnan(found)]
@@ -56,13 +56,10 @@ def _round(least, most):
     return next((middle for middle in middles if least < middle <= most), None)
 
 
-def _cases_of(rule, scheme, features, weights, worth):
-    return _cases(rule.costs(scheme, features).mul(weights, axis=0), features[[*NUMBERS[scheme]]], worth)
-
-
-def _cases(costs, features, worth):
+def _cases(rule, scheme, features, weights, worth):
     """[(where, library)]"""
-    names, costs, values = costs.columns, costs.to_numpy(), {name: column.to_numpy() for name, column in features.items()}
+    costs = rule.costs(scheme, features).mul(weights, axis=0)
+    names, costs, values = costs.columns, costs.to_numpy(), {name: features[name].to_numpy() for name in NUMBERS[scheme]}
     tried = [_one(EVERYWHERE, costs, worth)]
     for first, second in permutations(values):
         known = sorted(set(values[first]))

@@ -107,10 +107,9 @@ def held_figure(held):
         right.plot(some.variables, 100 * some.loss, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")
     for bound in (1 / WITHIN, WITHIN):
         left.axhline(bound, color=GREY, linewidth=0.9, linestyle="--")
-    number_axis(left.xaxis)
-    number_axis(left.yaxis)
+    for axis in (left.xaxis, left.yaxis, right.xaxis):
+        number_axis(axis)
     left.set(xlabel="measured step, µs", ylabel="predicted ÷ measured", title=f"Time of a step; dashed: within {number(WITHIN)} times")
-    number_axis(right.xaxis)
     right.set(xlabel="variables n", ylabel="loss of the choice, %", title="Time lost by the chosen library")
     right.legend(fontsize=8.5, loc="upper left")
     figure.suptitle("Each family predicted by the others; the choice is among libraries", x=0.01, ha="left", fontsize=10)

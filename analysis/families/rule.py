@@ -124,7 +124,7 @@ def _alone(data):
         for scheme, one in data.losses.items():
             left = one.index[[data.family[scene] == family for scene in one.index]]
             if len(left) and len(rest.losses[scheme]):
-                costs = rest.costs(scheme).fillna(UNKNOWN)
+                costs = cost(rest.losses[scheme]).fillna(UNKNOWN)
                 weighted, known = costs.to_numpy() * rest.weights(costs.index)[:, None], rest.features.loc[costs.index]
                 for feature, found in losses.items():
                     _, limit, below, above = by_hand.limit(known[feature].to_numpy(), weighted)
@@ -140,8 +140,7 @@ class _Rule:
         self.models, self.caution = {}, {}  # µs a step; what they count times
         for scheme in PASSES:  # the penalty form first
             for name in (us := data.us.get(scheme, {})):
-                times = us[name].dropna()
-                if len(times) >= FEWEST:
+                if len(times := us[name].dropna()) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
                     features, weights = data.features.loc[times.index], data.weights(times.index)
                     known = as_penalty(self.models.get(("penalty", name), {})) if dense and scheme == "saddle-point" else {}
@@ -170,7 +169,7 @@ class _Rule:
         the sparse one that is predicted the fastest on the scene with most operations: another family may fill more than all that are known."""
         found = {}
         for scheme in data.losses:
-            costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
+            costs, weights = cost(data.losses[scheme]), data.weights(data.losses[scheme].index)
             names = [name for name in costs if (scheme, name) in self.models and (costs[name] == 0).any()]
             if not names:  # too few were timed in this form
                 found[scheme] = []
@@ -230,13 +229,9 @@ class _Data:
         sizes = Counter(self.family[scene] for scene in scenes)
         return numpy.array([1 / sizes[self.family[scene]] / len(sizes) for scene in scenes])
 
-    def costs(self, scheme):
-        """Of scenes and libraries."""
-        return cost(self.losses[scheme])
-
 
 def cost(losses):
-    """One loss of a fifth is worse than four of a twentieth."""
+    """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""
     losses = losses.clip(upper=MOST)
     return losses * (1 + 4 * losses)
 
@@ -266,8 +261,7 @@ def _times(rows, libraries):
     """µs a step by contender: measured in turns, or of the look, scaled by the fastest library's two times."""
     rows = rows[rows.verdict.isin(["agrees", ""])].set_index("implementation")
     timed = rows[(rows.status == "ok") & (rows.verdict == "agrees")]
-    known = [name for name in timed.index if name in libraries]
-    if not known:
+    if not (known := [name for name in timed.index if name in libraries]):
         return pandas.Series(dtype=float)
     first = timed.loc[known, "to_rival"].astype(float).idxmin()
     found = (rows.look_us * (timed.step_us[first] / rows.look_us[first])).where(rows.status.isin(["ok", "slower"]))

@@ -61,8 +61,7 @@ def cases(tables, view):
     for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
         found.append({"case": f"By hand, {scheme} form", "link": "families.html#by-hand",
                       "take": _taken(rows) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
-    ahead = fastest_own(tables["scenes"], view.registry)
-    if len(ahead):
+    if len(ahead := fastest_own(tables["scenes"], view.registry)):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items()) + f" of {len(ahead)} scenes"
         found.append({"case": "You may take code that is no library", "link": "families.html#map",
                       "take": f"fastest: {names}; {number(1 / ahead.to_rival.max())} to {number(1 / ahead.to_rival.min())} times as fast as the fastest "

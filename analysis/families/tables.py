@@ -56,8 +56,7 @@ def family_of(scene):
 
 
 def _winner(timed, cells, names):
-    found = timing.rank(timed, agreed(cells, names))
-    if found is None:
+    if (found := timing.rank(timed, agreed(cells, names))) is None:
         lost = [one for name, one in cells.items() if name in names and one["status"] != "ok"]
         out_of_time = [one for one in lost if one["status"] == "dropped"]  # who might have won
         said = Counter(f"{one['status']}: {one['reason']}" for one in out_of_time or lost).most_common(1)  # of most
@@ -66,8 +65,7 @@ def _winner(timed, cells, names):
     within = timing.within(timed, found.second, found.winner) if found.second else ()
     return {"winner": found.winner, "step_us": cells[found.winner]["step_us"], "second": found.second or "",
             "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, **dict(zip(("within_low", "within_high"), within)),
-            "chance": found.chance, "holm": False, "decided": found.decided,
-            "settled": found.settled, "equivalent": " ".join(found.equivalent),
+            "chance": found.chance, "holm": False, "decided": found.decided, "settled": found.settled, "equivalent": " ".join(found.equivalent),
             "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
 
 
@@ -90,7 +88,6 @@ def orderings(about):
     """A row for each scene and order of elimination, as `mbs describe` computes them."""
     return pandas.DataFrame([
         {"scene": scene, "n": record.output.get("variables"), "ordering": name, "factor": one["factor_nonzeros"],
-         "per_column": one["per_column"], "flops": one["flops"], "height": one["height"],
-         "record": record.name}
+         "per_column": one["per_column"], "flops": one["flops"], "height": one["height"], "record": record.name}
         for scene, record in about.items()
         for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one])

@@ -15,20 +15,15 @@ def _multiples(rows, view):
     """The fastest library and the fastest of our own, each over the sizes that it was timed at."""
     sides = {"the fastest library": rows[rows.implementation.isin(view.registry.libraries)],
              "the fastest code of our own": rows[rows.implementation.isin(view.registry.own)]}
-    said = []
-    for who, mine in sides.items():
-        best = mine.sort_values("multiple").drop_duplicates("loops")
-        if len(best):
-            said.append(f"{who[0].upper()}{who[1:]} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
+    said = [f"{who[0].upper()}{who[1:]} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})"
+            for who, mine in sides.items() for best in [mine.sort_values("multiple").drop_duplicates("loops")] if len(best)]
     return [{"text": f"Beside code written for the N-four-bar alone: {'. '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
 def _leads(leads):
-    rows, found = leads[(leads.status == "ok") & leads.kind.isin(KINDS)], []
-    for name, mine in rows.groupby("implementation", sort=False):
-        faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
-        found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
-                     f"serves and slower in {slower} ({span(mine.lead)} times)")
+    rows = leads[(leads.status == "ok") & leads.kind.isin(KINDS)]
+    found = [f"{name} is shown to be faster than the fastest library in {(mine.low > 1).sum()} of {len(mine)} scenes that it serves "
+             f"and slower in {(mine.high < 1).sum()} ({span(mine.lead)} times)" for name, mine in rows.groupby("implementation", sort=False)]
     return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
 
 

@@ -56,8 +56,7 @@ def nested(groups, rounds):
     of the median over rounds. A source that the design cannot tell is missing."""
     one, median = rounds
     found = {"round": one}
-    repeated = [values for values in groups if len(values) > 1]
-    if not repeated:
+    if not (repeated := [values for values in groups if len(values) > 1]):
         return found
     within = sum(numpy.var(values, ddof=1) * (len(values) - 1) for values in repeated) / sum(len(values) - 1 for values in repeated)
     found["process"] = max(0.0, float(within) - median)

@@ -94,8 +94,7 @@ def _fastest(results, klu, others, low, high):
 def _share_of_speed(results, klu, cholmod):
     head = "F4", f"CHOLMOD performs at {CHOLMOD_OF_KLU} % of KLU", f"{CHOLMOD_OF_KLU} %"
     rule = Rule(CHOLMOD_OF_KLU - SPEED_BAND, CHOLMOD_OF_KLU + SPEED_BAND)
-    found = results.over_sizes(klu, cholmod, high=FIGURES_END, reaching=COVERED)
-    if not found:
+    if not (found := results.over_sizes(klu, cholmod, high=FIGURES_END, reaching=COVERED)):
         return unmeasured(head, f"KLU and CHOLMOD were not both timed at {COVERED} to {FIGURES_END} variables.", rule, " %")
     cases = [(f"n = {one.size:g}", [100 * value for value in one[:3]], one.record) for one in found]
     return judged(head, cases, rule, f"KLU ÷ {', '.join(dict.fromkeys(one.fast for one in found))}", " %")

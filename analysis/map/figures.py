@@ -90,8 +90,7 @@ def _shown(cell):
 
 def _cell(axes, x, y, height, cell, look, room):
     """Nothing where nobody was timed. A winner is opaque; those that are as fast stand in stripes of their colours; open cells are pale and hatched."""
-    shown = _shown(cell)
-    if not shown:
+    if not (shown := _shown(cell)):
         return
     axes.add_patch(Rectangle((x, y), 1, height, facecolor="white", linewidth=0))
     for place, name in enumerate(shown):
@@ -162,8 +161,7 @@ def sparse(results, look):
     beyond = [place for place, size in enumerate(sizes) if size > PAPER_END]
     for axes in panels:
         for number, (name, series) in enumerate(found.items()):  # side by side at their size
-            shift = DODGE * ((number + 0.5) / len(found) - 0.5)
-            places = [sizes.index(size) + shift for size in series]
+            places = [sizes.index(size) + DODGE * ((number + 0.5) / len(found) - 0.5) for size in series]
             known = [(place, one) for place, one in zip(places, series.values()) if one and bounded(one.low, one.high)]
             axes.plot(places, [one.value if one else 1.0 for one in series.values()], label=name, **look.line(name) | {"linestyle": "none"})
             axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
@@ -212,7 +210,6 @@ def over_fill(results, look):
         names.append(f"{who}, the fastest: {', '.join(dict.fromkeys(led.values()))}")
         axes.plot(list(led), [us["median"][name, fill] for fill, name in led.items()], style, color="black", linewidth=2.2, zorder=1.5, label=names[-1])
     axes.set(title=f"Figure 5: time of a pass over fill, n = {size:g}", xlabel="non-zeros of the tangent, % of n²", ylabel="time of a pass, µs")
-    axes.set_yscale("log")
     number_axis(axes.yaxis)
     axes.grid(True, which="major")
     legend(axes, order=names.index)

@@ -97,8 +97,7 @@ def by_id(table):
     found = {}
     for name, rows in table.groupby("id", sort=False):
         kinds = [one for one in VERDICTS if one in set(rows.verdict)]
-        measured = [one for one in kinds if one != UNMEASURED]
-        found[name] = ((MIXED if len(measured) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")
+        found[name] = ((MIXED if len({*kinds} - {UNMEASURED}) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")
     return found
 
 

@@ -37,8 +37,7 @@ def step_times(results):
     for size, timed in results.samples(natural_only=True).groupby("variables"):
         winners = [results.fastest(results.natural(size), results.layer(layer)) for layer in ("libraries", "all")]
         for name in results.implementations:
-            mine = timed[timed.implementation == name]
-            if len(mine):
+            if len(mine := timed[timed.implementation == name]):
                 steps, passes = mine.steps.iloc[0], mine.passes.iloc[0]
                 yield {"variables": size, "implementation": name, "median": mine.step_us.median(), "low": mine.low_us.min(),
                        "high": mine.high_us.max(), "processes": len(mine), "samples": mine["samples"].map(len).sum(), "steps": steps,
@@ -49,9 +48,8 @@ def step_times(results):
 def verdicts(table, names):
     """Per implementation: how many scenes agree, and the scenes of every other verdict."""
     scenes = table.drop_duplicates(["scene", "implementation"]).groupby(["implementation", "verdict"], sort=False).scene.agg(list)
-    found = {name: scenes[name].to_dict() if name in scenes else {} for name in names}
     return [{"implementation": name, "of": sum(map(len, mine.values())), "agreed": len(mine.pop("agrees", ())), "others": mine}
-            for name, mine in found.items()]
+            for name in names for mine in [scenes[name].to_dict() if name in scenes else {}]]
 
 
 def losses(results):

@@ -66,7 +66,7 @@ class Results:
     def alternatives(self, variant):
         """Rows of `variant` at natural fill on all pairs that it was timed on."""
         rows = self.timing
-        return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
+        return rows[(rows.status == "ok") & (rows.implementation.str.partition("+")[0] == variant) & rows.fill_asked.isna() &
                     ~rows.implementation.str.endswith(TWIN)]
 
     def rank(self, scene, names):

@@ -13,8 +13,7 @@ def answers(tables, view):
     if all(group["kind"] == "none" for group in groups):
         return [{"text": "Nothing was timed: no library took part or agreed with the reference.", "anchor": "losses"}]
     found = [{"text": f"At the four-bar's own fill: {' '.join(by_outcome(groups))}", "anchor": "answer"}]
-    dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
-    if dense:
+    if dense := [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]:
         found.append({"text": f"As the tangent fills, dense libraries overtake: {', '.join(dense)}.", "anchor": "maps"})
     if whole := [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]:
         first = whole[0]

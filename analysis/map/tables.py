@@ -25,9 +25,8 @@ def build(records, view):
     found = {name: conform(make(records), of_part("map")[name], f"map/{name}.csv")
              for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
-    seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)),
-                    "spread": carry.components(results.timing, with_samples(seeds)),
+                    "spread": carry.components(results.timing, with_samples(results.tidy[results.tidy.kind == "seeds"])),
                     "controls": pandas.DataFrame(controls(results.timing[results.timing.process > AFTER]))}
 
 
@@ -43,13 +42,11 @@ def tidy(records):
     timed_after_all = _pairs(found).isin(_pairs(timed[timed.status == "ok"]))
     found = found[(found.status != "timeout") | (found.process > 0) | ~timed_after_all]
 
-    names, environments = found.implementation.str.partition("+")[0].str.partition("/"), found.environment.str.partition("|")
     samples = found["samples"].map(lambda one: one if isinstance(one, tuple) else ())
     known = pilots[pilots.status == "ok"]
     found = found.assign(
-        folder=names[0], variant=names[2], build=environments[0].replace("own", ""), blas=environments[2], **_asked(found.scene),
-        process=found.process.where(found.process > 0), samples=samples.map(len).where(samples.map(bool)),
-        samples_us=[" ".join(f"{value:.6g}" for value in one) for one in samples],
+        blas=found.environment.str.partition("|")[2], **_asked(found.scene), process=found.process.where(found.process > 0),
+        samples=samples.map(len).where(samples.map(bool)), samples_us=[" ".join(f"{value:.6g}" for value in one) for one in samples],
         fill_percent=found.scene.map(dict(zip(known.scene, known.get("fill_percent", ())))),
         pilot_us=_pairs(found).map(dict(zip(_pairs(known), known.step_us))))
     return found.filter(list(of_part("map")["tidy"]))

@@ -9,8 +9,7 @@ def answers(tables, view):
     for step in view.settings["steps"]:
         rows = searched[searched.step == step]
         layers = {"libraries": rows[~rows.implementation.isin(own)], "own code": rows[rows.implementation.isin(own)]}
-        said = [_best(name, one) for name, one in layers.items() if len(one)]
-        if said:
+        if said := [_best(name, one) for name, one in layers.items() if len(one)]:
             found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'. '.join(said)}."})
     return [*found, *_clean(tables["steps"], tables["machine"], view), *_judging(tables["judging"])] or [
         {"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
@@ -23,8 +22,7 @@ def _clean(steps, machine, view):
               "deadline at all.") if len(observed) else ""
     said = [f"{number(rows.lost.sum(), 5)} of the deadlines of {number(1e3 * step)} ms in {number(rows.seconds.sum())} s"
             for step, rows in machine[machine.status == "done"].groupby("step")]
-    lost = f"The machine itself lost {' and '.join(said)}." if said else ""
-    text = " ".join(filter(None, (missed, lost)))
+    text = " ".join(filter(None, (missed, said and f"The machine itself lost {' and '.join(said)}.")))
     return [{"anchor": "steps" if missed else "machine", "text": text}] if text else []
 
 

@@ -53,8 +53,7 @@ def _judging(records):
             yield tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None}
             continue
         own = whole[whole.implementation == whole.groupby("implementation", sort=False).mean_us.median().idxmin()]
-        shares = own.judge_us / own.mean_us
-        row = own.loc[shares.sort_values().index[len(own) // 2]].to_dict()
+        row = own.loc[(own.judge_us / own.mean_us).sort_values().index[len(own) // 2]].to_dict()
         share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
         yield row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)}
 

@@ -9,7 +9,6 @@ from analysis.core.contest import grouped
 from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from study.scenes import metric
-from study.scenes.metric import extrapolate, observed_order
 from study.scenes.modelling import CASES
 from study.scenes.problems import read_list
 from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, kind
@@ -22,16 +21,14 @@ FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step"
 def build(records, view):
     listed = {problem.scene: problem for problem in read_list()[1]}
     found, runs = {"gate": [], "problems": [], "convergence": []}, {}
-    for record in records:
-        if record.role in ("gate", "compared", "everyone"):
-            problem = listed.get(record.cell["scene"])
-            if problem is None:
-                raise StudyError(f"{record.name}: {record.cell['scene']} is no standard problem of study/scenes/problems.yaml")
-            if record.role == "gate":
-                found["gate"] += [{"problem": problem.name, "implementation": name, "verdict": verdict, "reason": reason, "record": record.name}
-                                  for name, (verdict, reason) in record.verdicts.items()]
-            else:
-                runs.setdefault(problem.name, {})[record.cell["contenders"][0], record.option("--step")] = record
+    for record in (one for one in records if one.role in ("gate", "compared", "everyone")):
+        if (problem := listed.get(record.cell["scene"])) is None:
+            raise StudyError(f"{record.name}: {record.cell['scene']} is no standard problem of study/scenes/problems.yaml")
+        if record.role == "gate":
+            found["gate"] += [{"problem": problem.name, "implementation": name, "verdict": verdict, "reason": reason, "record": record.name}
+                              for name, (verdict, reason) in record.verdicts.items()]
+        else:
+            runs.setdefault(problem.name, {})[record.cell["contenders"][0], record.option("--step")] = record
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
@@ -70,7 +67,7 @@ def _known(problem, runs, name, step):
     finer, finest = (runs.get((other, one)) for one in problem.steps[1:])
     if not _whole(finer, finest):
         return None
-    return {column: extrapolate(_values(finer, column), _values(finest, column)) for column in problem.columns(finest.series)}
+    return {column: metric.extrapolate(_values(finer, column), _values(finest, column)) for column in problem.columns(finest.series)}
 
 
 def _whole(*records):
@@ -94,10 +91,10 @@ def convergence_rows(problem, runs):
             continue
         for column in problem.columns(three[0].series):
             values = [_values(record, column)[-1] for record in three]
-            limit, known = extrapolate(*values[1:]), published.get(column, numpy.nan)
+            limit, known = metric.extrapolate(*values[1:]), published.get(column, numpy.nan)
             yield {
                 "problem": problem.name, "implementation": name, "component": column, "time": three[0].series["t"][-1],
-                "coarse": values[0], "finer": values[1], "finest": values[2], "order": float(observed_order(*values)),
+                "coarse": values[0], "finer": values[1], "finest": values[2], "order": float(metric.observed_order(*values)),
                 "order_meaningful": bool(abs(values[1] - values[2]) > ORDER_NOISE * max(abs(values[2]), 1e-3)),
                 "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name}
 

@@ -13,8 +13,7 @@ def answers(tables, view):
                       f"step" + (f", with steps up to {number(1e3 * good.step.max())} ms" if len(good) else "")
                       + f", over {number(view.settings['duration'])} s."})
     whole = tables["whole"]
-    asked = whole[whole.must_hold != ""]
-    if len(asked):
+    if len(asked := whole[whole.must_hold != ""]):
         kept = asked[asked.must_hold == "yes"]
         found.append({"anchor": "whole", "text": f"Whole runs with everything automatic: {len(kept)} of {len(asked)} keep what "
                                                  f"their form must hold, up to N = {number(kept.loops.max(), 4)}."})

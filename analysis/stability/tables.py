@@ -14,8 +14,8 @@ def build(records, view):
         if record.role == "window":
             asked, window = record.options, record.output["penalty_window"] if record.done else {}
             found["windows"].append({
-                "loops": _loops(record), "precision": asked["precision"], "step": float(asked["step"]), "reason": record.reason,
-                "status": "ok" if record.done else record.status, "record": record.name} | {
+                "loops": int(record.cell["scene"].partition(":")[2]), "precision": asked["precision"], "step": float(asked["step"]),
+                "status": "ok" if record.done else record.status, "reason": record.reason, "record": record.name} | {
                 key: window.get(key) for key in ("lower", "lower_from", "upper", "upper_from")})
         elif record.role == "map":
             found["maps"].append(_run(record))
@@ -31,14 +31,10 @@ def _run(record):
     asked, (status, reason) = record.options, of_run(record)
     penalty, step = asked["penalty"], float(asked["step"])
     alpha = record.output.get("penalty", None if penalty == "auto" else float(penalty))
-    return {"loops": _loops(record), "scheme": asked["scheme"], "precision": asked["precision"],
+    return {"loops": int(record.cell["scene"].partition(":")[2]), "scheme": asked["scheme"], "precision": asked["precision"],
             "implementation": record.cell["contenders"][0], "step": step, "penalty_asked": penalty, "penalty": alpha,
             "alpha_dt2_4": alpha and float(f"{alpha * step**2 / 4:.6g}"), "status": status, "reason": reason,
             "record": record.name} | {key: record.output.get(key) for key in FIGURES}
-
-
-def _loops(record):
-    return int(record.cell["scene"].partition(":")[2])
 
 
 def holds(row):

@@ -17,16 +17,14 @@ def scene(variables, fill=None):
 
 def cell(name, variables, *times, fill=None, **more):
     """Rows of one timed contender, one process a time; `times`: µs a step, or tuples of samples."""
-    plain, _, other = name.partition("+")
-    blas = other or "openblas"
+    blas = name.partition("+")[2] or "openblas"
     rows = []
     for number, time in enumerate(times, start=1):
         samples = time if isinstance(time, tuple) else (time,)
         middle = float(pandas.Series(samples).median())
         rows.append({"kind": "timing", "scene": scene(variables, fill), "variables": variables, "fill_asked": fill,
                      "fill_percent": 100 * fill if fill else OWN_FILL, "implementation": name,
-                     "folder": plain.split("/")[0], "variant": plain.split("/")[1], "blas": blas, "build": "",
-                     "environment": "own|openblas", "status": "ok", "reason": "", "process": number, "steps": 100,
+                     "blas": blas, "environment": "own|openblas", "status": "ok", "reason": "", "process": number, "steps": 100,
                      "samples": len(samples), "step_us": middle, "low_us": min(samples), "high_us": max(samples),
                      "samples_us": " ".join(map(str, samples)), "passes": 220, "setup_us": 5.0, "record": f"r/{name}/{number}"}
                     | more)

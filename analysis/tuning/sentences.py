@@ -3,8 +3,7 @@ from analysis.core.text import number
 
 
 def answers(tables, view):
-    rows = tables["alternatives"]
-    rows = rows[rows.status == "ok"]
+    rows = tables["alternatives"].loc[lambda rows: rows.status == "ok"]
     if rows.empty:
         return [{"text": "Not measured: nothing that was tried was timed.", "anchor": ""}]
     slower, faster = rows[rows.low > 1], rows[rows.high < 1]

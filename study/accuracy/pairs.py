@@ -32,8 +32,7 @@ def _groups(runs):
                                                f"a dense step of more than {DENSE} variables takes too long") for one in mine]
                 continue
             quick = runs.quick(runs.subject.scene, STEP, mine, BEHIND, kind)
-            contenders = [one for one in mine if one in quick]  # in the order of the registry
-            for name, mine in _serving(runs, contenders).items():
+            for name, mine in _serving(runs, [one for one in mine if one in quick]).items():  # in the order of the registry
                 found.setdefault(name, []).append((kind, mine))
     return found
 
@@ -50,8 +49,7 @@ def _serving(runs, contenders):
 
 def _own(runs, groups):
     """Runs of everyone who was timed; of one implementation all over the same duration."""
-    rows = runs.measured()
-    rows = rows[(rows.status == "ok") & (rows.role == "pair")]
+    rows = runs.measured().loc[lambda rows: (rows.status == "ok") & (rows.role == "pair")]
     slowest = rows.groupby("implementation").step_us.max()
     return [(one, name, STEP, runs.subject.scene, duration) for name, kinds in groups.items() for _, contenders in kinds
             for one in contenders if one.name in slowest.index

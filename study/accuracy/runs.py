@@ -63,11 +63,10 @@ class Runs:
         """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its order."""
         for patience in PATIENCE if contenders else ():
             self.time("look", scene, "default", step, contenders, dense=dense, more=("--patience", patience))
-            rows = self.measured()
-            rows = rows[(rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
-                        & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us", kind="stable")
-            near = list(rows[rows.step_us <= behind * rows.step_us.min()].implementation.unique())
-            if near:
+            rows = self.measured().loc[
+                lambda rows: (rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
+                & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us", kind="stable")
+            if near := list(rows[rows.step_us <= behind * rows.step_us.min()].implementation.unique()):
                 return [self.names[name] for name in near]
         return []
 

@@ -95,8 +95,7 @@ def _measure(runs, scene, speed, found):
     runs.lab.tell(scene)
     for layer in runs.layers:
         for name, step in _wanted(runs, found, layer, scene != runs.subject.scene):
-            contenders = runs.serving(name, speed[layer])
-            if contenders:
+            if contenders := runs.serving(name, speed[layer]):
                 runs.time("look", scene, name, step, contenders)
     _judge(runs, scene)
     _rounds(runs, scene, runs.lab.settings["processes"][0])
@@ -119,9 +118,8 @@ def _wanted(runs, found, layer, filled):
 
 def _judge(runs, scene):
     """Runs of their own, where they have none, of those near the fastest in the look."""
-    table = runs.points()
-    table = table[(table.scene == scene) & table.time.notna() & table.error.notna()
-                  & table.status.isin((*FINISHED, NOT_JUDGED)) & table.time_from.isin(("look", "rounds"))]
+    table = runs.points().loc[lambda rows: (rows.scene == scene) & rows.time.notna() & rows.error.notna()
+                              & rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time_from.isin(("look", "rounds"))]
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
@@ -135,8 +133,7 @@ def _judge(runs, scene):
 def _rounds(runs, scene, processes, open_only=False):
     """Processes of the points that are near the fastest of their layer, contenders of one setting and step together; with
     `open_only` of those alone whose winner is not settled."""
-    table = runs.points()
-    table = table[table.scene == scene]
+    table = runs.points().loc[lambda rows: rows.scene == scene]
     if table.empty:
         return
     errors = runs.lab.settings["errors"]

@@ -19,8 +19,6 @@ GRACE = 1.0  # s between being asked to end and being made to
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "BLIS_NUM_THREADS",
                                      "MKL_NUM_THREADS")}  # else `mbs` sees to it, and starts a second time for that
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
-
-
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _signals = []  # received; compiled code of libraries may swallow what their handler raises
 
@@ -43,16 +41,14 @@ def run(command, seconds=None, memory_mb=None, alone=False):
     """Runs `command` in ROOT, within limits if they are given; it and all its children are gone when this returns or raises. `alone`: it
     stays on one processor."""
     if _signals:  # a pool's thread would die of the first, with a traceback
-        own = threading.current_thread() is threading.main_thread()
-        raise KeyboardInterrupt(_signals[0]) if own else StudyError("interrupted")
+        raise KeyboardInterrupt(_signals[0]) if threading.current_thread() is threading.main_thread() else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
         on_one = ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []  # the last that this process may use
         child = subprocess.Popen([*on_one, *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
                                  stderr=err, start_new_session=True, env=os.environ | ONE_THREAD)
         try:
-            ended = _ends(child, seconds)
-            if not ended:
+            if not (ended := _ends(child, seconds)):
                 os.kill(child.pid, signal.SIGTERM)  # so that it can say in what it was
                 _ends(child, GRACE)
         finally:
@@ -110,8 +106,7 @@ def _limited(command, memory_mb):
 
 
 def _text(file, tail=None):
-    size = file.seek(0, os.SEEK_END)
-    file.seek(max(0, size - tail) if tail else 0)
+    file.seek(max(0, file.seek(0, os.SEEK_END) - tail) if tail else 0)
     return file.read().decode("utf-8", "replace")
 
 

@@ -94,9 +94,8 @@ def usual(lab):
 def elsewhere(lab, cell):
     """Records of those who take no part in a cell, as they have processes of their own."""
     here = usual(lab)
-    for one in lab.contenders:
-        if one not in here:
-            lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded", "on another BLAS pair: timed in the parts map and limit only")
+    for one in [one for one in lab.contenders if one not in here]:
+        lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), "excluded", "on another BLAS pair: timed in the parts map and limit only")
 
 
 def about(lab, scenes):

@@ -64,6 +64,4 @@ def of_no_use(rows, known, least):
         return "finer values do not make the error smaller"
     before, now = (one["time"] / min(other["time"] for other in known if other["status"] in FINISHED and other["error"] <= one["error"])
                    for one in made[1:])
-    if now > FAR and now > 0.8 * before:
-        return f"takes {now:.1f} times the front's time at its error, and comes no nearer"
-    return ""
+    return f"takes {now:.1f} times the front's time at its error, and comes no nearer" if now > FAR and now > 0.8 * before else ""

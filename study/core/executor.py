@@ -109,9 +109,8 @@ def need_same(known, found, what):
 
 def _failure(ended):
     if ended.status == "exited":
-        refused = ended.code == USAGE
-        reason = ended.reason.partition(": ")[2] or ended.reason
-        return {"status": "refused" if refused else "crashed", "reason": reason if refused else ended.reason}
+        return {"status": "crashed", "reason": ended.reason} if ended.code != USAGE else {
+            "status": "refused", "reason": ended.reason.partition(": ")[2] or ended.reason}
     culprit = CULPRIT.search(f"{ended.reason}\n{ended.stderr}")
     return {"status": ended.status, "reason": ended.reason, "output": {"culprit": culprit[1]} if culprit else {}}
 

@@ -55,9 +55,8 @@ class Lab:
         programs = {cell.built for cell in todo}
         self.set.need_programs(sorted(programs - self.known))
         self.known |= programs
-        alone = [cell for cell in todo if cell.timed]
+        alone, others = ([cell for cell in todo if cell.timed == timed] for timed in (True, False))
         with ThreadPoolExecutor(cores()) as pool:
-            others = [cell for cell in todo if not cell.timed]
             found |= zip(others, pool.map(lambda one: self._made(one, drop), others))
         longest = max((record.seconds for record in found.values() if record.name not in known), default=0.0)
         self.spent = max(self.spent, before + longest)  # other cores were idle beside it

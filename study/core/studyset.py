@@ -34,8 +34,7 @@ class StudySet(Folder):
     def need_programs(self, names):
         """StudyError naming a program (Cell.built) that changed since the set's records were made; notes new ones."""
         known = self.facts["programs"]
-        paths = {name: ROOT / program_of(*name.split("@")) for name in names}
-        found = {name: digest(path)[:16] for name, path in paths.items() if path.exists()}
+        found = {name: digest(path)[:16] for name in names for path in [ROOT / program_of(*name.split("@"))] if path.exists()}
         if set(found) - set(known):
             with locks.noting(self.folder):  # other nodes of a cluster note theirs
                 known.update(facts_of(self.folder)["programs"])
@@ -112,8 +111,7 @@ def sets_in(*bases):
 
 def newest(base):
     """Folder of the newest set in `base`; StudyError if there is none."""
-    found = sets_in(base)
-    if not found:
+    if not (found := sets_in(base)):
         raise StudyError(f"{base.relative_to(ROOT)}/ holds no set: name one, or make one with study/run")
     return found[0].folder
 
@@ -218,8 +216,7 @@ def select(registry, only, option="--only: "):
 
 def finish(studyset, part, column, names):
     """Marks a column as done: its stamp lists its records with their digests."""
-    base = studyset.folder / "raw" / part
-    write_json(studyset.stamp(part, column), {name: digest(base / name) for name in sorted(set(names))})
+    write_json(studyset.stamp(part, column), {name: digest(studyset.folder / "raw" / part / name) for name in sorted(set(names))})
 
 
 def unfinished(studyset, columns):

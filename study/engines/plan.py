@@ -65,16 +65,13 @@ def columns(settings):
 def run(lab, column):
     subject, missing = subject_of(column), unavailable()
     asked = [engine for engine in read_list() if subject.name != ANDREWS or engine in SOLVERS]
-    for engine in asked:
-        if missing[engine]:
-            lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])
-    there = [engine for engine in asked if not missing[engine]]
-    if not there:
+    for engine in [one for one in asked if missing[one]]:
+        lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])
+    if not (there := [engine for engine in asked if not missing[engine]]):
         return  # nothing to be beside
     bench = Bench(lab, subject)
     engines = bench.engines(there)
-    ours = bench.ours(least_error(engines))
-    bench.rounds(engines, ours)
+    bench.rounds(engines, bench.ours(least_error(engines)))
 
 
 def unavailable():

@@ -24,16 +24,14 @@ SWEEP = "../study/limit/sweep_process"  # as seen from the build
 def sizes(lab):
     """Who is not timed at one size is not tried at a larger one."""
     known, lost = lab.settings["loops"], {}
-    every = sorted({*known, *lab.settings["large"]})
-    if every:
+    if every := sorted({*known, *lab.settings["large"]}):
         lab.one(Cell("limit", "", (), tuple(every), "bounds", timed=True, seconds=300))
     limit_code = [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]  # in the processes of most others
     for loops in every:
         here = [*limit_code, *(lab.contenders if loops in known else own(lab))]
         scene = f"four-bar:{loops}"
-        for one in here:
-            if one.name in lost:
-                lab.skip(Cell("bench", scene, (one,), role=f"size{LEFT_OUT}"), "excluded", lost[one.name])
+        for one in [one for one in here if one.name in lost]:
+            lab.skip(Cell("bench", scene, (one,), role=f"size{LEFT_OUT}"), "excluded", lost[one.name])
         patience = ("--patience", lab.settings["patience"]) if loops in known else ()
         rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases", *patience))
         timed_once = set(rows.implementation[rows.status == "ok"])
@@ -87,8 +85,7 @@ def sweeps(lab):
     """Processes take turns over the scenes, and each has both numbers of jobs."""
     for number in range(1, lab.settings["processes"] + 1):
         for scene, (name, *varied) in SWEPT.items():
-            one = lab.contender(name)
-            if one:
+            if one := lab.contender(name):
                 words = [word for each in varied for word in ("--vary", each)]
                 lab.run([Cell("", scene, (one,), (*words, "--lanes", lab.settings["swept"], "--duration", 0.1), "sweep", number,
                               SWEEP, timed=True, seconds=600)], drop=True)

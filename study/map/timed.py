@@ -41,8 +41,7 @@ class TimedScene:
             pairs = [one.blas for one in self.costs if one.ranked and self.scene.fill is None]
             control = [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
             self.records = self.processes([*self.costs, *control], count, "time")
-            wrong = differing(timed.timed_rows(self.records))
-            if not wrong:
+            if not (wrong := differing(timed.timed_rows(self.records))):
                 return
             for one in [one for one in self.costs if one.name in wrong]:
                 del self.costs[one]
@@ -100,8 +99,7 @@ def _pilots(lab, scene, contenders):
     cells = [Cell("bench", scene.name, (one,), ("--steps", steps, "--start", 0, f"--benchmark_repetitions={RUNS}",
                                                 "--benchmark_min_time=0"), "pilot", seconds=limit) for one in contenders]
     for record in lab.run(cells):
-        rows = [row for row in record.output.get("rows", {}).values() if not row.get("error_occurred")]
-        if rows:
+        if rows := [row for row in record.output.get("rows", {}).values() if not row.get("error_occurred")]:
             yield Pilot(record, min(rows[0]["cpu_us"]) / steps, rows[0]["fill_percent"])
         else:  # a warm-up and RUNS stretches were not done within the limit
             yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if record.status == "timeout" else math.inf)

@@ -93,9 +93,7 @@ class Probe:
     def _verdict(self, place, number):
         cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)
         self.runs[place] = record = self.lab.run([cell], drop=True)[0]
-        if record.status == "dropped":
-            return None
-        return judge(record, self.null(place) if needs_null(record) else None)
+        return None if record.status == "dropped" else judge(record, self.null(place) if needs_null(record) else None)
 
 
 def search(probe, count):

@@ -9,7 +9,6 @@ import numpy
 from scipy.special import ellipj, ellipkinc
 
 from study.scenes import mechanics
-from study.scenes.mechanics import GRAVITY
 
 
 def turning(times, k, angle, rate):
@@ -31,13 +30,13 @@ def turning(times, k, angle, rate):
 
 def pendulum(times):
     """A point mass on 1 m, from rest at (-1, 0)."""
-    sine, cosine, rate = turning(times, GRAVITY, numpy.pi / 2, 0)
+    sine, cosine, rate = turning(times, mechanics.GRAVITY, numpy.pi / 2, 0)
     return {"B.x": -sine, "B.y": cosine, "vB.vx": -rate * cosine, "vB.vy": -rate * sine}
 
 
 def four_bar(times, loops):
     """Eq. (9) of paper/README.md, from the upward vertical with 1 rad/s."""
-    sine, cosine, rate = turning(times, 3 * GRAVITY * (3 * loops + 1) / (2 * (4 * loops + 1)), 0, 1)
+    sine, cosine, rate = turning(times, 3 * mechanics.GRAVITY * (3 * loops + 1) / (2 * (4 * loops + 1)), 0, 1)
     return {"B0.x": sine, "B0.y": cosine, "vB0.vx": rate * cosine, "vB0.vy": -rate * sine}
 
 

@@ -14,7 +14,7 @@ from study.scenes import mechanics, metric, modelling, plan, problems, reference
 from study.scenes.metric import extrapolate, observed_order
 from study.tests.conftest import PROGRAM, ROOT
 
-GRAVITY = references.GRAVITY
+GRAVITY = mechanics.GRAVITY
 
 
 def second_derivative(function, column, times, step=1e-4):

@@ -9,7 +9,6 @@ from analysis.core import schema, timing
 from analysis.core.files import ROOT, StudyError, digest, read_json, write, write_json
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
-from study.core.executor import program_of
 from study.core.contest import Asked, verdicts
 from study.core.front import duration, set_up
 from study.core.options import Parser, directory
@@ -70,15 +69,13 @@ class _Present(StudySet):
     """A set's folder with the present program, whatever the set's is."""
     present: dict  # {environment: context}
 
+    facts = property(lambda self: {"context": next(iter(self.present.values()))})
+
     def context(self, one):
         return self.present[one.environment]
 
     def need_programs(self, names):
         """Nothing: _begin sees to them."""
-
-    @property
-    def facts(self):
-        return {"context": next(iter(self.present.values()))}
 
 
 @dataclass(frozen=True)
@@ -126,8 +123,7 @@ def measured(folder, name, known):
     """The table of one newcomer, or several variants of one, which is written."""
     newcomers = select(known, [name], "")
     profile = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], [])
-    asked = contests(StudySet(folder), newcomers, known)
-    if not asked:
+    if not (asked := contests(StudySet(folder), newcomers, known)):
         raise StudyError(f"{folder} has neither mechanisms nor a map that {name} could be timed on: study/run --part map families measures them")
     rivals = {rival for one in asked for rival in one.rivals(known.variants)}
     contenders = {one.name: one for one in on_usual_pairs(known, profile.blas, [*newcomers, *sorted(rivals - set(newcomers))])}
@@ -155,11 +151,9 @@ def measured(folder, name, known):
 def contexts(folder, contenders):
     """{environment: what its program says now}; StudyError naming what differs from the set."""
     known, found = StudySet(folder), {}
-    for one in contenders:
-        if one.environment in found:
-            continue
-        now = found[one.environment] = context_of(one)
-        kept = folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
+    for environment, one in {one.environment: one for one in contenders}.items():
+        now = found[environment] = context_of(one)
+        kept = folder / "contexts" / f"{environment.replace('|', '-')}.json"
         then = read_json(kept) if kept.exists() else known.facts["context"]
         if other := executor.differing(then, now, (*SAME, "blas_loaded") if kept.exists() else SAME):
             key, its, here = other
@@ -178,7 +172,7 @@ def versions(context):
 
 def _begin(folder, column, lab):
     """Goes on with the records of this very program, or removes those of an earlier one."""
-    path, program = folder / "added" / f"{column}.json", digest(ROOT / program_of())
+    path, program = folder / "added" / f"{column}.json", digest(ROOT / executor.program_of())
     if not path.exists() or read_json(path).get("program") != program:
         shutil.rmtree(lab.base / column, ignore_errors=True)
         (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
@@ -214,9 +208,7 @@ def _rows(contest, known, verdicts, records):
     for cell in contest.led:
         others = [name for name in good.implementation.unique() if name not in verdicts and "+" not in name and name not in wrong
                   and (cell.layer == "all" or name not in known.own)]
-        for name in verdicts:
-            if cell.layer == "libraries" and name in known.own:
-                continue
+        for name in (one for one in verdicts if cell.layer == "all" or one not in known.own):
             status, reason = _standing(rows[rows.implementation == name], verdicts[name], wrong.get(name))
             row = {"part": contest.part, "scene": contest.scene, "scheme": contest.scheme, "variables": contest.variables, "layer": cell.layer,
                    "implementation": name, "before": cell.winner, "hands": "not timed" if status in NOT_TIMED else "stays",

@@ -43,8 +43,7 @@ def against(arguments):
             names = select(known, options.only)
             for scene in options.scenes:
                 describe(scene)
-        build = _build(revision, folder / "run.log")
-        table = _measure(folder, options, known, names, revision, build)
+        table = _measure(folder, options, known, names, revision, _build(revision, folder / "run.log"))
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
     print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
     for row in table.itertuples():
@@ -123,8 +122,7 @@ def _row(name, scene, found):
         trees.append(rows[rows.implementation.str.partition("+")[0] == name].assign(implementation=tree))
     row = {"implementation": name, "scene": scene, "record": " ".join(one[0].name for one in found.values())}
     both = pandas.concat(trees)
-    wrong = both[both.status != "ok"]
-    if len(wrong):
+    if len(wrong := both[both.status != "ok"]):
         return row | {"reason": f"{wrong.implementation.iloc[0]}: {wrong.status.iloc[0]}: {wrong.reason.iloc[0]}"}
     if both.steps.nunique() > 1 or both.start.nunique() > 1:
         return row | {"reason": "the two programs time different stretches"}

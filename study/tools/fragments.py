@@ -38,8 +38,7 @@ def fragment(what):
 
 def _machines(main, others):
     """The row that says what holds on several processors; none of one."""
-    sets = agreement.compared(main, others)
-    if not sets:
+    if not (sets := agreement.compared(main, others)):
         return []
     count = agreement.shares(agreement.mechanisms(sets))
     names = ", ".join(one.folder.name for one in sets)

@@ -38,8 +38,7 @@ def store(arguments):
             raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
         if (RESULTS / name).exists():
             raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
-        stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
-        if len(stored) >= MOST:
+        if len(stored := sorted(path.parent.name for path in RESULTS.glob("*/set.json"))) >= MOST:
             raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
         pictures = _build(studyset, name)
     _tell(folder, name, pictures)

@@ -129,12 +129,10 @@ def surface(axes, table, over, result):
     known, failed = table[table[result].notna()], table[~table["finished"]]
     values = binned_statistic_2d(known[over[0]], known[over[1]], known[result], "median", bins).statistic
     lost = numpy.argwhere(numpy.histogram2d(failed[over[0]], failed[over[1]], bins)[0])
-    mesh = axes.pcolormesh(*bins, values.T, cmap="viridis")
-    axes.figure.colorbar(mesh, ax=axes, label=result)
+    axes.figure.colorbar(axes.pcolormesh(*bins, values.T, cmap="viridis"), ax=axes, label=result)
     middles = [(edge[:-1] + edge[1:]) / 2 for edge in bins]
     axes.plot(middles[0][lost[:, 0]], middles[1][lost[:, 1]], "x", color=FAILED, markersize=5)
-    axes.set(xlabel=over[0], ylabel=over[1])
-    axes.set_title(f"{result}, median of a cell" + ("; crosses: lanes failed" if len(lost) else ""))
+    axes.set(xlabel=over[0], ylabel=over[1], title=f"{result}, median of a cell" + ("; crosses: lanes failed" if len(lost) else ""))
 
 
 def edges(values):
@@ -151,8 +149,7 @@ def curve(axes, table, name, result):
     axes.plot(finished[name], finished[result], ".", color="#0b5cad")
     failed = table.loc[~table["finished"], name]
     axes.plot(failed, numpy.zeros(len(failed)), "x", color=FAILED, transform=axes.get_xaxis_transform(), clip_on=False)
-    axes.set(xlabel=name, ylabel=result)
-    axes.set_title(result + ("; crosses: lanes failed" if len(failed) else ""))
+    axes.set(xlabel=name, ylabel=result, title=result + ("; crosses: lanes failed" if len(failed) else ""))
 
 
 def on_cluster(words, table, count, profile):

@@ -20,8 +20,7 @@ def asked(lab):
     """Each variant that takes part on the pair of most, and what was tried for it; without the latter it does not."""
     found = ()
     for one in usual(lab):
-        tried = [name for name, said in lab.registry.tried.items() if said["tried_for"] == one.variant]
-        if tried:
+        if tried := [name for name, said in lab.registry.tried.items() if said["tried_for"] == one.variant]:
             found += (one, *(replace(one, name=name, variant=name) for name in tried))
     return found
 

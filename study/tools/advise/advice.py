@@ -40,14 +40,12 @@ class Advice:
     cut_short: list = field(default_factory=list)   # sentences
     hurried: bool = False                           # more time might have changed the answer
 
+    # The share of the error that pilots of a part of the motion may have.
+    pilot_error = property(lambda self: self.question.error * self.pilot_duration / self.question.duration)
+
     def serving(self, setting):
         """Who of those tried serves a setting, fastest first."""
         return serving(setting, {name: self.variants[name] for name in self.speeds})
-
-    @property
-    def pilot_error(self):
-        """The share of the error that pilots of a part of the motion may have."""
-        return self.question.error * self.pilot_duration / self.question.duration
 
     def hurry(self, sentence):
         self.hurried = True

@@ -64,8 +64,7 @@ def _setting(setting, advice):
 def _runner_up(candidates, told):
     """The second fastest candidate and why it lost; None if no other was timed."""
     timed = (one for one in candidates if one["rounds"] and not one["advised"])
-    second = min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]), default=None)
-    if not second:
+    if not (second := min(timed, key=lambda one: (-one["rounds"], one["us_per_second"]["median"]), default=None)):
         return None
     times, best = second["us_per_second"], told["us_per_second"]
     ratio = times["median"] / best["median"]

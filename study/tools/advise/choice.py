@@ -37,8 +37,7 @@ def counts(step, pilots, error=0.0):
     """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one that ends there, shows an order
     of at least 1, or leaves both estimates below a hundredth of `error` (a motion that steps hardly change shows no order)."""
     orders = halvings(pilots)
-    at = next((at for start in (step, 2 * step) for at in orders if close(at, start)), None)
-    if at is None:
+    if (at := next((at for start in (step, 2 * step) for at in orders if close(at, start)), None)) is None:
         return False
     small = [pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * error]
     return orders[at] >= 1 or all(any(close(one, other) for other in small) for one in (at, at / 2))
@@ -69,8 +68,7 @@ def by_order(step, estimate, pilots, order):
 def most(step, estimate, pilots, order, error):
     """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's may be, of which
     pilots tell, of the order that they show where theirs is longer; where there are none, by that order alone. Infinite where they show none."""
-    halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
-    if halves:
+    if halves := [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]:
         half = min(halves, key=lambda pilot: pilot.step)
         rest = most(half.step, half.estimate, pilots, order, error)
         if math.isfinite(rest):

@@ -66,10 +66,9 @@ def page(table):
 
 
 def _kind(kind, rows, ok):
-    settings = rows.advised_setting.dropna().value_counts()
     return [kind, rows.scene.nunique(), ", ".join(map(str, sorted(set(rows.n)))), len(rows), ok.accurate.sum(), ok.fast.sum(),
             number(rows.ratio.max()), ok.soon.sum(), number(rows.seconds.max(), 2), number(100 * rows.others.max(), 2),
-            "; ".join(f"{name} ({times})" for name, times in settings.items())]
+            "; ".join(f"{name} ({times})" for name, times in rows.advised_setting.dropna().value_counts().items())]
 
 
 def _failed(row):

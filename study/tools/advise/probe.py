@@ -54,8 +54,7 @@ def find_speeds(advice, settings, run):
                             advice.question.first_step, advice.question.duration)
         advice.probe += rows
         advice.speeds, seen = _sorted(advice.speeds | found), seen | set(tried)
-        unable = [row["implementation"] for row in rows if row["status"] == "unsupported"]
-        if not unable:
+        if not (unable := [row["implementation"] for row in rows if row["status"] == "unsupported"]):
             return
         able = {name: said for name, said in able.items() if name not in unable}
 
@@ -63,8 +62,7 @@ def find_speeds(advice, settings, run):
 def named(described, variants, settings):
     """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those near the fastest by the
     rule of `mbs describe`, who is sparse and unknown to it, and who else is needed for a setting; all without a rule."""
-    foreseen = _foreseen(described, variants)
-    if not foreseen:
+    if not (foreseen := _foreseen(described, variants)):
         return dict.fromkeys(variants, math.nan), {}
     order = sorted(foreseen, key=foreseen.get)
     tried = [name for name in order if foreseen[name] <= BEHIND * foreseen[order[0]]]
@@ -88,8 +86,7 @@ def probe(variants, described, run, step, duration):
         usual = min([*speeds.values(), foreseen.get(name, math.inf)])
         limit = 1.0 + 20e-6 * QUICK * usual if speeds else max(2.0, min(LONGEST, run.left(0.3)))
         setting = form if name in serving(form, variants) else Setting()
-        steps = QUICK if usual < DEAR else LEAST_STEPS
-        rows.append(run("probe", setting, name, step, min(duration, steps * step), limit))
+        rows.append(run("probe", setting, name, step, min(duration, (QUICK if usual < DEAR else LEAST_STEPS) * step), limit))
         if rows[-1]["status"] in FINISHED:
             speeds[name] = rows[-1]["step_us"]
         elif rows[-1]["status"] in LOST:  # passes of steps that are too long say little

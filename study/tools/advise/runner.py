@@ -80,11 +80,6 @@ class Runner:
         row = self("pilots", setting, variant, step, duration, seconds, checks=HALVED)
         return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"), row["reason"])
 
-    @property
-    def seconds(self):
-        """Since the question began; runs that are read from files count as when they were made, so that they decide alike."""
-        return time.monotonic() - self.began
-
     def left(self, share=1.0):
         """Seconds of a share of the budget."""
         return share * self.budget - self.seconds
@@ -92,11 +87,10 @@ class Runner:
     def tell(self, text):
         self.lab.tell(f"{self.seconds:.0f} of {self.budget:g} s, {text}" if math.isfinite(self.budget) else text)
 
-    @property
-    def waited(self):
-        """Share of the time of all runs in which they had no processor: other programs had it."""
-        return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
-
+    # Since the question began; runs that are read from files count as when they were made, so that they decide alike.
+    seconds = property(lambda self: time.monotonic() - self.began)
+    # Share of the time of all runs in which they had no processor: other programs had it.
+    waited = property(lambda self: min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0)
     slowdown = property(lambda self: 1.0 / (1.0 - self.waited))  # how many times longer runs take for that
 
     def _simulate(self, kind, setting, variant, step, duration, seconds, words, truth=None):

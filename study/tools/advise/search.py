@@ -115,8 +115,7 @@ class Search:
         if after.step is None:
             self._end(one, after.chosen, after.reason)
             return
-        pilot = self.run(one.setting, after.step)
-        if pilot is None:
+        if (pilot := self.run(one.setting, after.step)) is None:
             self.cut = True
             self._settle(one, "no time was left for the pilots that it needs")
         elif pilot.status == "unsupported":

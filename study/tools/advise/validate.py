@@ -92,12 +92,10 @@ def _compare(error, duration, answer, run, variants, found, speeds):
     """The row of validation.csv of one question."""
     settings, told, candidates = {setting.name: setting for setting in everything()}, answer["advice"], []
     for row in fastest(found, error):
-        serves = serving(settings[row["setting"]], variants)
-        served = {name: us for name, us in speeds.items() if name in serves}
+        served = {name: us for name, us in speeds.items() if name in serving(settings[row["setting"]], variants)}
         candidates += [timing.Candidate(settings[row["setting"]], name, row["step"])
                        for name, us in served.items() if us <= SLOWER * min(served.values())]
-    advised = told and timing.Candidate(settings[told["setting"]], told["implementation"], told["step"], kept=True)
-    if advised:
+    if advised := told and timing.Candidate(settings[told["setting"]], told["implementation"], told["step"], kept=True):
         candidates = [one for one in candidates if one != advised] + [advised]
 
     def timed(one, number):

@@ -18,12 +18,10 @@ def verify(advice, run):
     """Whole runs of the fastest candidate, until one is as accurate as asked; then `advice.outcome`, the line as advised, without a check."""
     question = advice.question
     for _ in range(VERIFICATIONS):
-        one = next(iter(timing.ranked(advice.candidates, question.deadline_us)), None)
-        if not one:
+        if not (one := next(iter(timing.ranked(advice.candidates, question.deadline_us)), None)):
             return
         seconds = max(run.left(), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
-        duration = _affordable(one, question, seconds / run.slowdown)
-        if not duration:
+        if not (duration := _affordable(one, question, seconds / run.slowdown)):
             advice.hurry("no time was left to verify another candidate")
             return
         run.tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
@@ -36,8 +34,7 @@ def verify(advice, run):
         run.tell("the advised line itself")
         advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
         if advice.outcome["status"] not in FINISHED:
-            row["refused"] = f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}"
-            one.reason = row["refused"]
+            row["refused"] = one.reason = f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}"
             continue
         advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
         if duration < question.duration:
@@ -110,8 +107,7 @@ def what_helps(advice, run):
     question, found = advice.question, advice.found.values()
     if advice.hurried:
         advice.helps.append(f"--budget {2 * question.budget:g}: time was short")
-    pilots = [(one, pilot) for one in found for pilot in one.pilots]
-    if not pilots:
+    if not (pilots := [(one, pilot) for one in found for pilot in one.pilots]):
         return
     best, pilot = min(pilots, key=lambda pair: (not pair[1].valid, pair[1].estimate if pair[1].valid else pair[1].step))
     least = min(known(other, one.pilots, advice.pilot_error, one.setting.order) for one, other in pilots)
@@ -124,8 +120,7 @@ def what_helps(advice, run):
         _first_kept(advice, setting, [(f"--step {step:g}", step, question.duration) for step in steps],
                     f"in such steps {setting.name} keeps the error", run)
     slow = [P99 * one.chosen_us for one in found if one.chosen_us > (question.deadline_us or math.inf)]
-    late = [one.late_us for one in advice.candidates if one.late_us] + slow
-    if late:
+    if late := [one.late_us for one in advice.candidates if one.late_us] + slow:
         advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: at best 99 % of the steps take up to about {min(late):.3g} us")
     else:
         step = question.step or pilot.step

@@ -9,6 +9,7 @@ from scipy import stats
 
 from analysis.core import schema
 from analysis.core.files import read_object
+from analysis.core.gather import gather
 from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio
 from analysis.core.view import View
 from analysis.map.results import Results
@@ -64,8 +65,7 @@ def questions(studyset):
 def _map(studyset):
     if not (studyset.folder / "map" / "cells.csv").exists():
         return
-    tables = {"tidy": schema.read_table(studyset.folder, "map", "tidy")}
-    results = Results(tables, View(studyset.folder, "map"))
+    results = Results({"tidy": schema.read_table(studyset.folder, "map", "tidy")}, View(studyset.folder, "map"))
     for layer in LAYERS:
         for scene, rows in results.timing.groupby("scene"):
             if ranking := results.rank(scene, results.layer(layer)):
@@ -87,11 +87,16 @@ def _families(studyset):
 
 class Agreement(namedtuple("Agreement", "question machines")):
     """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
-
-    @property
-    def sets(self):
-        """Of each machine, those inside."""
-        return [[name for name, one in ranking.ratios.items() if one.value == 1 or not one.low > EQUIVALENT] for ranking in self.machines]
+    winners = property(lambda self: [one.winner for one in self.machines])
+    # Of each machine, those inside.
+    sets = property(lambda self: [[name for name, one in ranking.ratios.items() if one.value == 1 or not one.low > EQUIVALENT]
+                                  for ranking in self.machines])
+    # Whether each winner is as fast as the winner on every other machine.
+    alike = property(lambda self: all(mine.winner in its.equivalent for mine in self.machines for its in self.machines))
+    # Whom to take where nobody knows the machine: the least worst loss, of those inside on all, else of all.
+    robust = property(lambda self: next((name for name in self.worst if name in self.common), next(iter(self.worst), "")))
+    # "decided" where the machines leave one alone.
+    verdict = property(lambda self: {0: "differs", 1: "decided"}.get(len(self.common), "several"))
 
     @property
     def common(self):
@@ -99,29 +104,12 @@ class Agreement(namedtuple("Agreement", "question machines")):
         first, *others = self.sets
         return [name for name in first if all(name in one for one in others)]
 
-    winners = property(lambda self: [one.winner for one in self.machines])
-
-    @property
-    def alike(self):
-        """Whether each winner is as fast as the winner on every other machine."""
-        return all(mine.winner in its.equivalent for mine in self.machines for its in self.machines)
-
     @property
     def worst(self):
         """{contender timed on all machines: its largest ratio to the fastest there}, the least first."""
         shared = set.intersection(*(set(one.ratios) for one in self.machines))
         found = {name: max(one.ratios[name].value for one in self.machines) for name in shared}
         return dict(sorted(found.items(), key=lambda one: one[1]))
-
-    @property
-    def robust(self):
-        """Whom to take where nobody knows the machine: the least worst loss, of those inside on all, else of all."""
-        return next((name for name in self.worst if name in self.common), next(iter(self.worst), ""))
-
-    @property
-    def verdict(self):
-        """"decided" where the machines leave one alone."""
-        return {0: "differs", 1: "decided"}.get(len(self.common), "several")
 
 
 def agreements(sets, asked=questions):
@@ -165,9 +153,7 @@ def shares(agreed):
 
 def held(agreed, fresh):
     """{layer: (decided cells that a further set answers, of these with its winner in their set)}."""
-    known, found = questions(fresh), {}
-    for one in agreed:
-        if one.verdict == "decided" and one.question in known:
-            cells, inner = found.get(one.question.layer, (0, 0))
-            found[one.question.layer] = (cells + 1, inner + (known[one.question].winner in one.common))
-    return found
+    known = questions(fresh)
+    found = gather((one.question.layer, known[one.question].winner in one.common) for one in agreed
+                   if one.verdict == "decided" and one.question in known)
+    return {layer: (len(inside), sum(inside)) for layer, inside in found.items()}

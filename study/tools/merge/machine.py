@@ -26,8 +26,7 @@ def origins(studyset):
 
 def rates(studyset):
     """{name of RATES: value}, as `mbs limit` measured them; {} of a set without."""
-    found = [one for one in records.read_part(studyset.folder, "limit") if one.role == "bounds" and "machine" in one.output]
-    if not found:
+    if not (found := [one for one in records.read_part(studyset.folder, "limit") if one.role == "bounds" and "machine" in one.output]):
         return {}
     known = found[0].output["machine"]
     known |= {one["name"]: one["bytes_per_ns"] for one in known.get("levels", [])}

@@ -123,16 +123,16 @@ def _rule(known):
 
 
 def _automatic(known):
-    rows = known.tables("stability")["maps"]
-    rows = rows[(rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
+    rows = known.tables("stability")["maps"].loc[
+        lambda rows: (rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
     return _counted(rows.status == "ok", eq, "all; here {count} of {total}")
 
 
 def _of_2008(holds, text):
     """Of the estimated window of the largest size at the step of 2008."""
     def found(known):
-        rows = known.tables("stability")["windows"]
-        rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & rows.lower.notna()]
+        rows = known.tables("stability")["windows"].loc[
+            lambda rows: (rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & rows.lower.notna()]
         for one in rows.nlargest(1, "loops").itertuples():
             return bool(holds(one)), text.format(factor=number(PAPER_PENALTY), lower=number(one.lower), upper=number(one.upper))
         return None, ""

@@ -60,14 +60,11 @@ def work(known):
     mine = rows[rows.loops == max(fronts.index[fronts >= FRONT], default=rows.loops.max())]
     won = tables["winners"].loc[lambda rows: (rows.subject == mine.subject.iloc[0]) & rows.fill_asked.isna()]
     figure = accuracy.work(mine, won, Look(known.registry), "largest of position, m", "")
-    front, everyone, ratios, ratios_of_everyone = figure.axes
-    for axes in (everyone, ratios_of_everyone):  # own code included
+    front, _, ratios, _ = figure.axes  # the others are of all, own code included
+    shown = (front,) if met(won).empty else (front, ratios)  # without a winner there is nothing to be over
+    for axes in [one for one in figure.axes if one not in shown]:
         figure.delaxes(axes)
     figure.set_layout_engine("none")  # which would count the legend to the axes
-    shown = (front, ratios)
-    if met(won).empty:  # nothing to be over
-        figure.delaxes(ratios)
-        shown = (front,)
     for axes, place in zip(shown, GridSpec(1, len(shown), figure=figure, wspace=0.3)):
         axes.set_subplotspec(place)
     front.set_title(f"n = {mine.variables.max():.0f}")
@@ -80,8 +77,7 @@ def window(known):
     """Of the smallest, a middle and the largest size."""
     tables = known.tables("stability")
     rows = tables["maps"].loc[lambda rows: (rows.status != "dropped") & (rows.scheme == "penalty") & (rows.precision == "double")]
-    sizes = sorted(rows.loops.unique())
-    if not sizes:
+    if not (sizes := sorted(rows.loops.unique())):
         return nothing(NOTHING)
     return stability.one_map(rows[rows.loops.isin([sizes[0], sizes[len(sizes) // 2], sizes[-1]])], tables["windows"], "penalty", "double")
 

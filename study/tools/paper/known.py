@@ -10,6 +10,19 @@ from study.tools.merge import agreement, machine
 
 
 class Known(Folder):
+    # What the map's tables are asked for.
+    results = cached_property(lambda self: of(self.tables("map"), self.view("map")))
+    # The other stored sets, as Known.
+    stored = cached_property(lambda self: [
+        Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder])
+    # The sets that processors are compared by: this one and those of its build; [] if it is alone.
+    compared = cached_property(lambda self: agreement.compared(self, self.stored))
+    # All that the paper is of: this one, and those beside it that are compared.
+    sets = property(lambda self: self.compared or [self])
+    # What the compared ones say together of libraries.
+    agreed = cached_property(lambda self: [one for one in agreement.agreements(self.compared)[0] if one.question.layer == "libraries"]
+                             if self.compared else [])
+
     @cache
     def tables(self, part):
         """{table: DataFrame} of a part of a set; empty where the set lacks it."""
@@ -22,28 +35,3 @@ class Known(Folder):
         """Texts of the part's own answers."""
         module = importlib.import_module(f"analysis.{part}.sentences")
         return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
-
-    @cached_property
-    def results(self):
-        """What the map's tables are asked for."""
-        return of(self.tables("map"), self.view("map"))
-
-    @cached_property
-    def stored(self):
-        """The other stored sets, as Known."""
-        return [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
-
-    @cached_property
-    def compared(self):
-        """The sets that processors are compared by: this one and those of its build; [] if it is alone."""
-        return agreement.compared(self, self.stored)
-
-    @property
-    def sets(self):
-        """All that the paper is of: this one, and those beside it that are compared."""
-        return self.compared or [self]
-
-    @cached_property
-    def agreed(self):
-        """What the compared ones say together of libraries."""
-        return [one for one in agreement.agreements(self.compared)[0] if one.question.layer == "libraries"] if self.compared else []

@@ -84,8 +84,7 @@ def traces(scene, motion):
 def typical_length(scene, motion):
     """Median distance of what rods, bodies and springs join, m: the size of symbols goes by it."""
     joined = (*scene.rods, *scene.springs, *(body.points for body in scene.bodies))
-    corners = [motion.positions[0][points] for points in joined if len(points) > 1]
-    lengths = [numpy.linalg.norm(at - at[0], axis=1).max() for at in corners]
+    lengths = [numpy.linalg.norm(at - at[0], axis=1).max() for points in joined if len(points) > 1 for at in [motion.positions[0][points]]]
     return float(numpy.median(lengths)) if lengths else 0.1 * reach(scene, motion)
 
 
@@ -132,7 +131,6 @@ def coils(scene, motion):
     for first, second in scene.torsion_springs:
         lines = [pair for pair in (second, first) if all(scene.points[point][1] != "vector" for point in pair)]
         shared = sorted(set(first) & set(second)) if len(lines) == 2 else []
-        at = shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1]) or vectors.get(first[1])
-        if at:
+        if at := shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1]) or vectors.get(first[1]):
             found.append({"first": first, "second": second, "at": at, "length": length})
     return found

@@ -80,8 +80,7 @@ def _places(path, columns, scene):
 def _table(path, file, columns, frames):
     """(the rows that are shown, of each the largest values since the one before), two arrays; StudyError naming the line of a row that is not
     whole or does not come after the one before."""
-    count = sum(1 for _ in _lines(file))
-    if count < 2:
+    if (count := sum(1 for _ in _lines(file))) < 2:
         raise StudyError(f"{path} has {count} row(s): a motion needs two at least")
     every, shown, largest, since, last = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf, -numpy.inf
     for row, line in enumerate(_lines(file)):
