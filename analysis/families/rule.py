@@ -62,6 +62,13 @@ def missed(held):
     return held[~good]
 
 
+def carried(own, there):
+    """Losses {(form, scene): loss} of the rule of a set on the mechanisms of another one; each is (tables, registry)."""
+    rule, data = _Rule(_Data(*own)), _Data(*there)
+    return {(scheme, scene): losses.loc[scene].get(rule.choice(scheme, data.features.loc[[scene]])[0], numpy.nan)
+            for scheme, losses in data.losses.items() if rule.candidates.get(scheme) for scene in losses.index}
+
+
 def document(tables):
     """What `mbs describe` applies: candidates, times, held, scenes (harness/src/describe/README.md); None without a rule."""
     steps, known = tables["steps"], tables["mechanisms"].set_index("scene")

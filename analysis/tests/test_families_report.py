@@ -145,6 +145,13 @@ def test_the_rule_compares_times_and_holds_on_families_left_out():
     assert [(form, name) for form, name, text, _ in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
 
 
+def test_a_rule_is_carried_to_what_was_measured_elsewhere():
+    here, there = mechanisms(), mechanisms(lambda family, name: 5.0 if (family, name) == ("shell", "one/b") else 1.0)
+    assert set(rule.carried((here, REGISTRY), (here, REGISTRY)).values()) == {0.0}
+    found = rule.carried((here, REGISTRY), (there, REGISTRY))
+    assert len(found) == 18 and {scene for (_, scene), loss in found.items() if loss > 0} <= {"shell:10", "shell:100", "shell:1000"} and max(found.values()) > 0
+
+
 def test_dense_and_sparse_ones_are_compared_though_known_families_hardly_ask_for_one(monkeypatch):
     monkeypatch.setitem(REGISTRY.variants["one/b"], "dense", True)
     held = mechanisms(lambda family, name: {"block": 2.7, "shell": 1.0}.get(family, 3.0) if name == "one/b" else 1.0)["held"]

@@ -2,10 +2,13 @@
 import json
 import re
 
+import numpy
+
 from analysis.core import site
 from analysis.core.files import ROOT, RULE, StudyError, as_json, read_json, write_text
 from analysis.core.view import Folder
-from study.tools.merge import agreement
+from analysis.families.rule import carried
+from study.tools.merge import agreement, machine
 
 MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
@@ -42,9 +45,10 @@ def _machines(main, others):
         return []
     count = agreement.shares(agreement.mechanisms(sets))
     names = ", ".join(one.folder.name for one in sets)
-    held = {one.folder.name: read_json(one.folder / "families" / RULE.name)["held"] for one in sets if one.folder != main.folder}
-    rules = "".join(f"; the rule made of {name}: {100 * one['mean_loss']:.1f} % slower on average, {100 * one['worst_loss']:.0f} % at worst"
-                    for name, one in held.items())
+    known = lambda one: ({name: machine.table(one.folder, "families", name) for name in ("mechanisms", "scenes")}, one.registry)
+    found = {one.folder.name: [*carried(known(main), known(one)).values()] for one in sets if one.folder != main.folder}
+    rules = "".join(f"; the rule of {main.folder.name}, on what was measured for {name}: {100 * numpy.nanmean(losses):.1f} % slower than the "
+                    f"fastest on average, {100 * numpy.nanmax(losses):.0f} % at worst" for name, losses in found.items())
     where = f" (sets {names}, commit {main.facts['context']['commit'][:10]})"
     return [{"case": "Your processor is another one",
              "take": f"what `build/mbs bench` names there; on {len(sets)} processors{where} the same library is fastest on {count['same']} of "

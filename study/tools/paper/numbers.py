@@ -3,6 +3,7 @@
 import math
 from collections import defaultdict, namedtuple
 
+import numpy
 import pandas
 from scipy.stats import gmean
 
@@ -241,7 +242,7 @@ def _rule(known):
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
     return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
                 families=one["families"], scenes=one["scenes"]) | {
-        "elsewhere": _elsewhere(known.compared[1:]), "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
+        "elsewhere": _elsewhere(known.compared[1:]), "carried": _carried(known, known.compared[1:]), "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
 
 
@@ -249,6 +250,18 @@ def _elsewhere(others):
     """The worst loss of the rules that other sets give."""
     held = pandas.concat([one.tables("families")["held"] for one in others]) if others else pandas.DataFrame()
     return of_rows(percent(held.loss.max()), "families/held", held.nlargest(1, "loss")) if len(held) else None
+
+
+def _carried(known, others):
+    """What the rule of the set costs on the other ones."""
+    of = lambda one: (one.tables("families"), one.registry)
+    losses = {(one, *case): loss for one in others for case, loss in rules.carried(of(known), of(one)).items() if loss == loss}
+    if not losses:
+        return None
+    one, scheme, scene = max(losses, key=losses.get)
+    rows = one.tables("families")["winners"].loc[lambda rows: (rows.scene == scene) & (rows.scheme == scheme) & (rows.layer == "libraries")]
+    return of_rows(f"{percent(numpy.mean([*losses.values()]), 1)} longer than the fastest on average, {percent(max(losses.values()))} at worst",
+                   "families/winners", rows)
 
 
 def _default(rows):
