@@ -30,16 +30,31 @@ const Point& point_named(const Scene& scene, const std::string& name) {
   throw std::runtime_error("no point " + name);
 }
 
-Vector3 part(const Scene& scene, const std::string& name, const std::vector<double>& x) {
-  Vector3 result{};
-  const Point& point = point_named(scene, name);
-  if (!point.is_fixed()) {
-    std::copy_n(x.begin() + point.offset, scene.model.dimension(), result.begin());
+/// What `of` is of a point of the scene, or of a body's point that is a sum of others.
+template <class Of>
+Vector3 of_named(const Scene& scene, const std::string& name, Of of) {
+  for (const Marker& marker : scene.elements.markers) {
+    if (marker.name != name) continue;
+    Vector3 sum{};
+    for (const Marker::Part& one : marker.parts) {
+      const Point& point = scene.model.points()[static_cast<std::size_t>(one.point)];
+      sum = sum + multiply(one.matrix, of(point));
+    }
+    return sum;
   }
-  return result;
+  return of(point_named(scene, name));
+}
+Vector3 part(const Scene& scene, const std::string& name, const std::vector<double>& x) {
+  return of_named(scene, name, [&](const Point& point) {
+    Vector3 result{};
+    if (!point.is_fixed()) {
+      std::copy_n(x.begin() + point.offset, scene.model.dimension(), result.begin());
+    }
+    return result;
+  });
 }
 Vector3 place(const Scene& scene, const std::string& name) {
-  return point_named(scene, name).position;
+  return of_named(scene, name, [](const Point& point) { return point.position; });
 }
 
 /// The accelerations with which a scene begins, Eq. (1) with Phi'' = 0.

@@ -30,6 +30,7 @@ inline Halves operator+(Halves a, const Halves& b) { return a += b; }
 inline Halves operator-(Halves a, const Halves& b) { return a -= b; }
 inline Halves operator*(Halves a, const Halves& b) { return a *= b; }
 inline Halves operator*(Halves a, double x) { return a *= x; }
+inline Halves operator*(double x, Halves a) { return a *= x; }
 #if !defined(__AVX512F__)
 template <>
 struct Short<double, 8> {
