@@ -17,7 +17,7 @@ BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their reference
                ("limit", "scenes"),     # the same scenes
                ("families", "limit"),   # looks, gates and times of a scene
                ("tuning", "limit")}     # cells and verdicts of a scene
-TOOLS_UPON = {"merge": {"map"}, "paper": set(parts())}  # which ask for what these parts have found
+TOOLS_UPON = {"merge": {"families", "map"}, "paper": set(parts())}  # which ask for what these parts have found
 SHARED = {"fragments", "merge", "shelf", "store"}  # what tools take from each other
 PATHS = [path for path in subprocess.run(["git", "ls-files", "study/*.py", "analysis/*.py"], cwd=ROOT, capture_output=True,
                                          text=True, check=True).stdout.split("\n")[:-1] if (ROOT / path).exists()]

@@ -7,7 +7,6 @@ import numpy
 from analysis.core import site
 from analysis.core.files import ROOT, RULE, StudyError, as_json, read_json, write_text
 from analysis.core.view import Folder
-from analysis.families.rule import carried
 from study.tools.merge import agreement, machine
 
 MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
@@ -45,8 +44,7 @@ def _machines(main, others):
         return []
     count = agreement.shares(agreement.mechanisms(sets))
     names = ", ".join(one.folder.name for one in sets)
-    known = lambda one: ({name: machine.table(one.folder, "families", name) for name in ("mechanisms", "scenes")}, one.registry)
-    found = {one.folder.name: [*carried(known(main), known(one)).values()] for one in sets if one.folder != main.folder}
+    found = {one.folder.name: [*machine.carried(main, one).values()] for one in sets if one.folder != main.folder}
     rules = "".join(f"; the rule of {main.folder.name}, on what was measured for {name}: {100 * numpy.nanmean(losses):.1f} % slower than the "
                     f"fastest on average, {100 * numpy.nanmax(losses):.0f} % at worst" for name, losses in found.items())
     where = f" (sets {names}, commit {main.facts['context']['commit'][:10]})"

@@ -6,6 +6,7 @@ from scipy.stats import gmean
 from analysis.core import records, schema
 from analysis.core.controls import judged
 from analysis.core.files import StudyError, read_object
+from analysis.families import rule
 
 RATES = {"vector_bytes": "widest vectors of the build, bytes", "flops_per_ns": "multiply-adds in the widest vectors, operations a ns",
          "divisions_per_ns": "divisions in the widest vectors, a ns",
@@ -71,3 +72,8 @@ def table(folder, part, name):
     if kept.exists() and name in read_object(kept, tables=dict)["tables"]:
         return schema.read_table(folder, part, name)
     return schema.conform(pandas.DataFrame(), schema.of_part(part)[name], f"{part}/{name}.csv")
+
+
+def carried(main, other):
+    """What the rule of a set costs on the mechanisms of another one."""
+    return rule.carried(*(({name: table(one.folder, "families", name) for name in ("mechanisms", "scenes")}, one.registry) for one in (main, other)))
