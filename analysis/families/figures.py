@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 
-from analysis.core.style import GREY, MARKERS, Look, missing, number_axis
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, missing, number_axis
 from analysis.core.text import number
 from analysis.families.rule import WITHIN
 from analysis.families.tables import SCHEMES
@@ -101,7 +101,7 @@ def held_figure(held):
         for axes in (left, right):
             missing(axes, "too few mechanisms for a rule")
         return figure
-    for scheme, mark, colour in zip(SCHEMES, ("o", "^"), ("#0072B2", "#D55E00")):
+    for scheme, mark, colour in zip(SCHEMES, ("o", "^"), ALTERNATIVES):
         some = rows[rows.scheme == scheme]
         left.plot(some.step_us, some.predicted_us / some.step_us, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")
         right.plot(some.variables, 100 * some.loss, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")

@@ -68,21 +68,13 @@ inline void set_number(V& v, int i, F x) {
   }
 }
 
-/// Four of eight numbers.
-template <typename V>
-inline auto low_half(const V& v) {
+/// Four of eight numbers, from the first or, `kFrom` 4, from the fifth on.
+template <int kFrom, typename V>
+inline auto four_of(const V& v) {
   if constexpr (std::is_same_v<V, Halves>) {
-    return v.low;
+    return kFrom == 0 ? v.low : v.high;
   } else {
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
-  }
-}
-template <typename V>
-inline auto high_half(const V& v) {
-  if constexpr (std::is_same_v<V, Halves>) {
-    return v.high;
-  } else {
-    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    return __builtin_shufflevector(v, v, kFrom, kFrom + 1, kFrom + 2, kFrom + 3);
   }
 }
 
@@ -122,8 +114,8 @@ inline void store_first(F* x, const V& v) {
   if constexpr (P == N) {
     store<F, N>(x, v);
   } else if constexpr (N == 8 && P > 4) {
-    store<F, 4>(x, low_half(v));
-    store_first<P - 4>(x + 4, high_half(v));
+    store<F, 4>(x, four_of<0>(v));
+    store_first<P - 4>(x + 4, four_of<4>(v));
   } else if constexpr (N == 4 && P > 2) {
     store<F, 2>(x, __builtin_shufflevector(v, v, 0, 1));
     x[2] = v[2];
@@ -337,7 +329,7 @@ inline void store_transposed(const V (&c)[P], F* rows) {
           if constexpr (kLanes == 4) {
             part[k] = column;
           } else {
-            part[k] = from == 0 ? low_half(column) : high_half(column);
+            part[k] = from == 0 ? four_of<0>(column) : four_of<4>(column);
           }
         }
         store_four<N>(part[0], part[1], part[2], part[3], L - from, rows + from * N + j);

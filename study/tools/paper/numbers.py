@@ -254,8 +254,7 @@ def _elsewhere(others):
 
 def _carried(known, others):
     """What the rule of the set costs on the other ones."""
-    of = lambda one: (one.tables("families"), one.registry)
-    losses = {(one, *case): loss for one in others for case, loss in rules.carried(of(known), of(one)).items() if loss == loss}
+    losses = {(one, *case): loss for one in others for case, loss in machine.carried(known, one).items() if loss == loss}
     if not losses:
         return None
     one, scheme, scene = max(losses, key=losses.get)
