@@ -21,6 +21,12 @@ def controls(timed):
                    "record": " ".join(group[group.implementation == twin].record)}
 
 
+def controls_in(records):
+    """`controls` of those records that have a twin."""
+    twinned = [one for one in records if any(name.endswith(timing.TWIN) for name in one.cell["contenders"])]
+    return controls(timing.processes(timing.counted(twinned)))
+
+
 def judged(table):
     """{"pairs", "false", "widest", "chance", "sound"} of `controls`: how many were decided though nothing differs, the ratio
     furthest from 1, and how likely so many are by chance."""
@@ -28,6 +34,14 @@ def judged(table):
     chance = float(special.bdtrc(false - 1, pairs, 1 - timing.CONFIDENCE)) if pairs else math.nan  # scipy.stats takes as long to load as all else
     widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
     return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
+
+
+def said(table):
+    """What `judged` finds, in words; "" without controls."""
+    if not (found := judged(table))["pairs"]:
+        return ""
+    return (f"Controls, where nothing differs: {found['false']} of {found['pairs']} decided falsely"
+            f"{'' if found['sound'] else '. More than chance allows: this run is no evidence'}.")
 
 
 def disturbance(records):

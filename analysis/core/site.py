@@ -10,7 +10,7 @@ import markupsafe
 import matplotlib.pyplot as plt
 
 from analysis.core import schema
-from analysis.core.controls import disturbance, told
+from analysis.core.controls import disturbance, said as said_of_controls, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
 from analysis.core.records import without_collection
@@ -37,7 +37,7 @@ def write_part(folder, part):
     plt.close("all")
     known, others = _module(part, "page").context(tables, view), told(disturbance(found))
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
-        **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part)))
+        **_frame(folder, part), **known, disturbance=others, control="" if "controls" in known else said_of_controls(tables.get("controls", ())), figures=figures, schema=schema.of_part(part)))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
         "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],

@@ -102,7 +102,7 @@ function fillPredicted(found, state) {
     raw: () => [["feature", "amount", "µs each", "µs"], ...one.terms.map((term) => [term.feature, short(term.amount, 5), short(term.us), short(term.product)])]}));
   fillRanking(target, "model-0", `µs a step at n = ${short(found.asked.n, 5)}, fill ${short(found.features.fill)} %, ${found.form} form`,
               "Interpolated: sums of the case's numbers, fitted on all mechanisms of the set. mbs describe uses such sums too, but "
-              + "puts one of few candidates first, chosen with caution. Lines: where nine of ten times lie, judged on families left out. "
+              + "puts one of few candidates first. Lines: where nine of ten times lie, judged on families left out. "
               + (found.asked.features?.n > 0 ? "The numbers are those of the scene itself."
                                              : "The numbers of the case are those of the nearest mechanisms, scaled to it."),
               rows, "µs a step, interpolated",

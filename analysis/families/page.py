@@ -1,5 +1,4 @@
 # What page.html.j2 shows of families of mechanisms.
-from analysis.core.controls import judged
 from analysis.core.text import number
 from analysis.families.bounds import bounds
 from analysis.families.rule import missed, summary
@@ -17,7 +16,7 @@ def context(tables, view):
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
     held, decided = tables["held"], winners[(winners.layer == "libraries") & winners.decided.fillna(False).astype(bool)]
-    return {"settings": view.settings, "ranked": ranked, "controls": judged(tables["controls"]), "bounds": bounds(tables),
+    return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables),
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
             "holm": [(scheme, int(rows.holm.astype(bool).sum()), len(rows)) for scheme, rows in decided.groupby("scheme", sort=False)],
@@ -30,10 +29,10 @@ def context(tables, view):
 
 
 def _formulas(steps):
-    """(form, library, its step in µs as text, its caution) of those that the rule compares."""
+    """(form, library, its step in µs as text) of those that the rule compares."""
     if steps.empty:
         return []
     compared = steps[steps.candidate.astype(bool)]
     products = lambda rows: (" ".join([number(us), *features_of(term)[1:]]) for us, term in zip(rows.us, rows.term))  # without passes
-    return [(scheme, name, f"passes × ({' + '.join(products(rows))})", rows.caution.iloc[0])
+    return [(scheme, name, f"passes × ({' + '.join(products(rows))})")
             for (scheme, name), rows in compared.groupby(["scheme", "implementation"], sort=False)]

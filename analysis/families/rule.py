@@ -1,11 +1,10 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers of a scene's structure and the passes of its steps.
 #
-# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), σ their scatter in the fit, the
-# least one's is taken. This caution was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution,
-# changes no choice there. That a dense one is always compared, and the sparse one that is predicted to be the fastest where a factorization takes
-# most operations, was chosen so, too: without the families that fill most, neither is worth it. A loss is of times taken in turns, else of the
-# first look, else of the look at the next smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is
-# none of these a loss is not known: such scenes are counted, in no mean, and say nothing of who is worth comparing.
+# A few libraries are compared in each form of the step; that of the least predicted time (times.py) is taken. That a dense one is always compared,
+# and the sparse one that is predicted to be the fastest where a factorization takes most operations, was chosen with a look at families left out:
+# without those that fill most, neither is worth it. A loss is of times taken in turns, else of the first look, else of the look at the next smaller
+# machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known: such scenes are
+# counted, in no mean, and say nothing of who is worth comparing.
 from collections import Counter
 from itertools import combinations
 
@@ -77,7 +76,7 @@ def document(tables):
     times, candidates = {}, {}
     for (name, scheme), rows in steps.groupby(["implementation", "scheme"], sort=False):
         times.setdefault(name, {"layer": rows.layer.iloc[0]})[scheme] = {
-            "coefficients": dict(zip(rows.term, rows.us)), "caution": rows.caution.iloc[0], "low": rows.low.iloc[0], "high": rows.high.iloc[0]}
+            "coefficients": dict(zip(rows.term, rows.us)), "low": rows.low.iloc[0], "high": rows.high.iloc[0]}
         if rows.candidate.iloc[0]:
             candidates.setdefault(scheme, []).append(name)
     fastest = tables["winners"][(tables["winners"].layer == "libraries") & (tables["winners"].winner != "")].drop_duplicates("scene")
@@ -107,7 +106,7 @@ def _steps(data, rule, ratios, registry):
     for (scheme, name), found in rule.models.items():
         low, high = _range(ratios, scheme, name)
         yield from ({"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
-                     "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name],
+                     "candidate": name in rule.candidates[scheme], "term": term, "us": us,
                      "low": low, "high": high, "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items())
 
 
@@ -144,32 +143,29 @@ class _Rule:
     """Models of all and candidates, fitted on some families."""
 
     def __init__(self, data):
-        self.models, self.caution = {}, {}  # µs a step; what they count times
+        self.models = {}  # µs a step
         for scheme in PASSES:  # the penalty form first
             for name in (us := data.us.get(scheme, {})):
                 if len(times := us[name].dropna()) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
                     features, weights = data.features.loc[times.index], data.weights(times.index)
                     known = as_penalty(self.models.get(("penalty", name), {})) if dense and scheme == "saddle-point" else {}
-                    self.models[scheme, name] = found = model(TERMS[scheme, dense], features, times, weights**0.5, known)
-                    scatter = numpy.average(numpy.log(times / predicted(found, features)) ** 2, weights=weights) ** 0.5
-                    self.caution[scheme, name] = float(numpy.exp(scatter / 2))
+                    self.models[scheme, name] = model(TERMS[scheme, dense], features, times, weights**0.5, known)
         self.candidates = self._compared(data)
 
     def choice(self, scheme, features):
         """(name, predicted µs) of the candidate that is taken on a scene."""
-        name = self._cautious(scheme, self.candidates[scheme], features).iloc[0].idxmin()
-        return name, predicted(self.models[scheme, name], features)[0]
+        times = self._times(scheme, self.candidates[scheme], features).iloc[0]
+        return times.idxmin(), times.min()
 
     def costs(self, scheme, features):
         """Of scenes and candidates, by predicted times."""
-        times = self._cautious(scheme, self.candidates[scheme], features)
+        times = self._times(scheme, self.candidates[scheme], features)
         return cost(times.div(times.min(axis=1), axis=0) - 1)
 
-    def _cautious(self, scheme, names, features):
-        """Predicted µs times caution, of scenes and names."""
-        return pandas.DataFrame({name: self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names},
-                                index=features.index)
+    def _times(self, scheme, names, features):
+        """Predicted µs, of scenes and names."""
+        return pandas.DataFrame({name: predicted(self.models[scheme, name], features) for name in names}, index=features.index)
 
     def _compared(self, data):
         """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere. Among them are a dense one and
@@ -182,7 +178,7 @@ class _Rule:
                 found[scheme] = []
                 continue
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
-            times = self._cautious(scheme, names, features).to_numpy()
+            times = self._times(scheme, names, features).to_numpy()
             costs = costs[names].to_numpy()
             best, most = {}, features[WORK[scheme]].argmax()
             dense = {place for place, name in enumerate(names) if data.registry.variants[name].get("dense")}

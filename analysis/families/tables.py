@@ -5,9 +5,8 @@ from collections import Counter
 import pandas
 
 from analysis.core import timing
-from analysis.core.contest import agreed, by_scene, contests, grouped, ratio_to, rival_of
-from analysis.core.controls import controls
-from analysis.core.registry import TWIN
+from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
+from analysis.core.controls import controls_in
 from analysis.core.schema import conform, of_part
 from analysis.families import defaults
 from analysis.families.rule import judged
@@ -34,8 +33,7 @@ def build(records, view):
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
         for layer in layers:
             timing.holm([row for row in winners if (row["scheme"], row["layer"]) == (scheme, layer)])
-        twinned = [one for one in by_role.get(scheme, []) if any(name.endswith(TWIN) for name in one.cell["contenders"])]
-        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned) for row in controls(rows)]
+        twins += [{"scheme": scheme} | row for row in controls_in(by_role.get(scheme, []))]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]

@@ -1,8 +1,8 @@
 # What code without a library is held to: bounds, and the worst that was measured for each.
 #
 # Of all such code the fastest counts, size by size and scene by scene. A ratio is held or not held where its whole interval
-# says so, else open; an exponent too, by the interval of its fit; a set-up and a sweep's gain, which have none, by their values. The latter is of
-# `mbs sweep`, whoever simulates its lanes. Where not all cases were measured nothing is held as a whole.
+# says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value. A sweep's gain is of `mbs sweep`, whoever
+# simulates its lanes. Where not all cases were measured nothing is held as a whole.
 import numpy
 
 from analysis.core.timing import power_law

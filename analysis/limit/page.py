@@ -11,7 +11,7 @@ def context(tables, view):
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
             "sizes": grouped(_timed(steps[steps.form == "penalty"]).sort_values(["loops", "step_us"]), "variables"),
             # First the form whose passes do not depend on the size.
-            "growth": grouped(_timed(own).sort_values("form", ascending=False, kind="stable"), "form"), "scenes": by_scene(tables["scenes"]),
+            "growth": grouped(_timed(own).sort_values("form", ascending=False, kind="stable"), "form"), "scenes": by_scene(tables["scenes"], tables["leads"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables),
             "sweeps": tables["sweeps"].to_dict("records"), "nodes": NODES}
@@ -21,11 +21,12 @@ def _timed(rows):
     return rows[(rows.status == "ok") & rows.step_us.notna()]
 
 
-def by_scene(scenes):
-    """[(scene, kind, n, dimension, rows)], the fastest first; also those that only a first look was taken at."""
+def by_scene(scenes, leads):
+    """[(scene, kind, n, dimension, libraries that are fastest, rows)], the fastest first; also those that only a first look was taken at."""
+    equivalent = dict(zip(leads.scene, leads.equivalent))
     rows = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
     found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), *group[["kind", "variables", "dimension"]].iloc[0],
-              group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
+              equivalent.get(name, "").split(), group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
     return sorted(found, key=lambda one: (KINDS.index(one[1]), one[3], one[2]))
 
 

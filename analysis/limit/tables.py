@@ -3,6 +3,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
+from analysis.core.controls import controls_in
 from analysis.core.schema import conform, of_part
 from analysis.limit.held import must_hold
 
@@ -18,7 +19,8 @@ def build(records, view):
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
              "steps": [], "scenes": [], "leads": [], "batches": [*_batches(by_role.get("batch", []))],
-             "sweeps": [*_sweeps(by_role.get("sweep", []))]}
+             "sweeps": [*_sweeps(by_role.get("sweep", []))],
+             "controls": [row for kind in KINDS for row in controls_in(by_role.get(kind, []))]}
     for role in (*FORMS, *KINDS):
         for scene, timed, cells, _ in contests(by_role, role):
             names = [name for name in (LIMIT, *registry.variants) if name in cells]  # without anchors of other pairs
@@ -40,9 +42,10 @@ def build(records, view):
 
 def _leads(timed, cells, registry):
     """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
-    rival = rival_of(timed, cells, registry)
+    found = timing.rank(timed, agreed(cells, registry.libraries))
+    rival, equivalent = (found.winner, " ".join(found.equivalent)) if found else (None, "")
     for name in (name for name in registry.variants if name in registry.own and name in cells):
-        row = {"implementation": name, "rival": rival} | {key: cells[name][key] for key in ("status", "reason", "record")}
+        row = {"implementation": name, "rival": rival, "equivalent": equivalent} | {key: cells[name][key] for key in ("status", "reason", "record")}
         if not agreed(cells, [name]):
             yield row | ({"status": "dropped", "reason": "the gate was not asked, as the budget was spent"} if row["status"] == "ok" else {})
         elif rival is None:
@@ -87,13 +90,14 @@ def _sweeps(records):
             continue
         lanes = good[0].output["lanes"]
         rows = pandas.DataFrame([row | {"process": process} for process, record in enumerate(good) for row in record.output["rows"]])
-        rows = rows.join(rows[rows.jobs == 1].set_index("process")[["wall_s", "cpu_s"]], on="process", rsuffix="_alone")
+        rows = rows.join(rows[rows.jobs == 1].set_index("process").cpu_s, on="process", rsuffix="_alone")
+        sides = timing.Paired(timing.apart(rows.assign(implementation=rows.jobs, status="ok"), "wall_s"))
         merge = lanes / rows.merge_s.median()
         for jobs, each in rows.groupby("jobs", sort=False):
             rates = lanes / each.wall_s
             rate = rates.median()
             yield known | {
                 "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate, "least": rates.min(),
-                "most": rates.max(), "lane_us": 1e6 / lanes * each.cpu_s.median(), "gain": (each.wall_s_alone / each.wall_s).median(),
+                "most": rates.max(), "lane_us": 1e6 / lanes * each.cpu_s.median(), **timing.ratio(sides, 1, jobs).columns("gain"),
                 "work": (each.cpu_s / each.cpu_s_alone).median(), "memory_mb": each.memory_mb.max(), "merged_per_s": merge,
                 "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name}

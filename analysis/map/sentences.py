@@ -1,5 +1,5 @@
 # The answer to "Which implementation is fastest at which size and fill?", from the tables.
-from analysis.core.controls import judged
+from analysis.core.controls import said
 from analysis.core.gather import gather
 from analysis.map import summary
 from analysis.map.ledger import told
@@ -19,10 +19,8 @@ def answers(tables, view):
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
-    control = judged(tables["controls"])
-    if control["pairs"]:
-        found.append({"text": f"Controls, where nothing differs: {control['false']} of {control['pairs']} decided falsely"
-                              f"{'' if control['sound'] else '. More than chance allows: this run is no evidence'}.", "anchor": "carries"})
+    if control := said(tables["controls"]):
+        found.append({"text": control, "anchor": "carries"})
     found.append({"text": f"The paper's claims: {told(tables['claims'])}.", "anchor": "claims"})
     return found
 

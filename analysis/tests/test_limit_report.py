@@ -211,17 +211,17 @@ def swept(number, one, two, status="done"):
 def test_sweeps_are_projected_from_the_lanes_that_were_run():
     found = made(swept(1, 2.0, 1.0), swept(2, 4.0, 2.0), swept(3, 2.0, 1.0))
     rows = found["sweeps"].set_index("jobs")
-    assert list(rows.lanes_per_s) == [500, 1000] and list(rows.gain) == [1, 2] and list(rows.work) == [1, 2]
+    assert list(rows.lanes_per_s) == [500, 1000] and list(rows.gain) == pytest.approx([1, 2]) and list(rows.work) == [1, 2]
     assert rows.million_s[2] == pytest.approx(1000 + 100) and rows.nodes_s[2] == pytest.approx(10 + 100)
     assert (rows.least[1], rows.most[1], rows.lane_us[1]) == (250, 500, 2000)
     assert any("2 times as many lanes a second as one job" in one["text"] for one in sentences.answers(found, VIEW))
     assert made(swept(1, 1.0, 1.0, "dropped"))["sweeps"].reason.tolist() == ["why"]
 
 
-@pytest.mark.parametrize("two, status, gain, verdict", [(1.0, "done", 2.0, "held"), (1.2, "done", 2 / 1.2, "not held"),
-                                                        (1.0, "dropped", numpy.nan, "not measured")])
+@pytest.mark.parametrize("two, status, gain, verdict", [((1.0, 1.0), "done", 2.0, "held"), ((1.2, 1.2), "done", 2 / 1.2, "not held"),
+                                                        ((1.0, 1.2), "done", 2 / 1.2**0.5, "open"), ((1.0, 1.0), "dropped", numpy.nan, "not measured")])
 def test_two_jobs_are_held_to_a_gain(two, status, gain, verdict):
-    row = said(made(swept(1, 2.0, two, status))).loc["lanes a second of a sweep by two jobs ÷ by one"]
+    row = said(made(*(swept(number, 2.0, one, status) for number, one in enumerate(two, 1)))).loc["lanes a second of a sweep by two jobs ÷ by one"]
     assert (row.verdict, row.cases, row.measured) == (verdict, 1, status == "done") and row.worst == pytest.approx(gain, nan_ok=True)
 
 

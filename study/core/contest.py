@@ -10,6 +10,7 @@ NEAR = 2.0  # times the fastest library: who takes longer has no further times
 WIDE = 4.0  # the same, of those that are named
 STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
+CONTROLS = 3  # scenes of a part on which the fastest library is timed beside itself
 SHORT = ("--steps", 16)  # of the gate for those who are too slow to be timed further: the fewest that it judges by
 
 
@@ -70,6 +71,11 @@ def contests(lab, scene, forms, *, own, always=False, control=False):
             here += [twin_of(one) for one in sorted((one for one in here if one.name not in own), key=lambda one: times[one.name])[:1]]
         measure(lab, scene, here, processes=form.processes, repetitions=form.samples, settings=(*form.settings, *form.stretch), role=form.role)
     return looks
+
+
+def controls_of(scenes):
+    """Those with a control, from small to large."""
+    return {scenes[len(scenes) * place // CONTROLS] for place in range(CONTROLS) if scenes}
 
 
 def near(rows, contenders, own, always=False, wide=()):

@@ -4,11 +4,10 @@ from analysis.core.timing import LEFT_OUT
 from analysis.families.rule import shape
 from analysis.families.tables import SCHEMES
 from study.core.cell import Cell
-from study.core.contest import Form, about, contests, elsewhere, times_of, usual
+from study.core.contest import Form, about, contests, controls_of, elsewhere, times_of, usual
 from study.core.setting import Setting
 
 SETTINGS = {"scenes": list, "processes": dict, "samples": int}
-CONTROLS = 3  # scenes on which the fastest library is timed beside itself
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long
@@ -25,7 +24,7 @@ def columns(settings):
 
 def run(lab, column):
     listed = lab.settings["scenes"]
-    controls = {listed[len(listed) * place // CONTROLS] for place in range(CONTROLS) if listed}  # from small to large
+    controls = controls_of(listed)
     here, looks, compared = usual(lab), {}, read_json(RULE).get("candidates", {})  # the next rule needs their times where others were faster
     for scene, record in zip(listed, about(lab, listed)) if here else []:
         elsewhere(lab, Cell("bench", scene, role="penalty-look"))

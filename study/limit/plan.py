@@ -5,7 +5,7 @@ from analysis.core.files import ROOT
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
-from study.core.contest import CHECK_S, Asked, Form, about, contests, elsewhere, near, usual, verdicts
+from study.core.contest import CHECK_S, Asked, Form, about, contests, controls_of, elsewhere, near, usual, verdicts
 from study.core.profile import by_share
 from study.core.setting import Setting
 from study.core.timing import measure
@@ -13,7 +13,7 @@ from study.scenes.problems import read_list
 
 SETTINGS = {"loops": list, "large": list, "problems": list, "examples": list, "fills": list, "batches": list, "sets": list, "swept": int,
             "patience": float, "processes": int, "samples": int}
-FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes
+FIRST = ("--start", 0, "--steps", 40, "--patience", 1)  # the same passes at all sizes
 BATCH_S = 0.02  # a process of batches lasts about ten times that
 SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of a tenth of a second
     "four-bar:10": ("compiled_chains/sweeps", "rods/A0-B0/mass=uniform:0.5:2", "gravity/1=normal:-9.81:0.5"),
@@ -22,32 +22,25 @@ SWEEP = "../study/limit/sweep_process"  # as seen from the build
 
 
 def sizes(lab):
-    """Who is not timed at one size is not tried at a larger one."""
     known, lost = lab.settings["loops"], {}
     if every := sorted({*known, *lab.settings["large"]}):
         lab.one(Cell("limit", "", (), tuple(every), "bounds", timed=True, seconds=300))
     limit_code = [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]  # in the processes of most others
     for loops in every:
         here = [*limit_code, *(lab.contenders if loops in known else own(lab))]
-        scene = f"four-bar:{loops}"
-        for one in [one for one in here if one.name in lost]:
-            lab.skip(Cell("bench", scene, (one,), role=f"size{LEFT_OUT}"), "excluded", lost[one.name])
         patience = ("--patience", lab.settings["patience"]) if loops in known else ()
-        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases", *patience))
-        timed_once = set(rows.implementation[rows.status == "ok"])
-        lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
-                 if row.implementation not in timed_once and row.status != "dropped"}
+        rows = timed(lab, loops, here, lost, "size", ("--phases", *patience))
         if loops in known:
             asked = near(rows, here, {LIMIT, *lab.registry.own}, always=True)
-            verdicts(lab, [Asked(scene, asked, "size-gate")], each=CHECK_S, drop=True)
+            verdicts(lab, [Asked(f"four-bar:{loops}", asked, "size-gate")], each=CHECK_S, drop=True)
 
 
 def growth(lab):
     """In the saddle-point form, over the first steps: the same passes at all sizes."""
-    setting = Setting("saddle-point")
+    setting, lost = Setting("saddle-point"), {}
     here = [one for one in own(lab) if lab.registry.serves(one.variant, *setting.needs)]
     for loops in sorted(lab.settings["large"]):
-        timed(lab, f"four-bar:{loops}", here, "growth", (*setting.words(), *FIRST))
+        timed(lab, loops, here, lost, "growth", (*setting.words(), *FIRST))
 
 
 def listed(settings):
@@ -63,10 +56,11 @@ def scenes(lab):
     here = usual(lab)
     chosen = listed(lab.settings) if here else []
     about(lab, [scene for scene, _, _ in chosen])
+    controls = controls_of([scene for scene, _, _ in chosen])
     for scene, kind, settings in chosen:
         elsewhere(lab, Cell("bench", scene, role=f"{kind}-look"))
         contests(lab, scene, [Form(kind, here, lab.settings["processes"], lab.settings["samples"], settings)],
-                 own={LIMIT, *lab.registry.own}, always=True)
+                 own={LIMIT, *lab.registry.own}, always=True, control=scene in controls)
 
 
 def batches(lab):
@@ -91,10 +85,17 @@ def sweeps(lab):
                               SWEEP, timed=True, seconds=600)], drop=True)
 
 
-def timed(lab, scene, contenders, role, settings=()):
-    """The rows of a scene's processes."""
-    return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                           settings=settings, role=role))
+def timed(lab, loops, contenders, lost, role, settings):
+    """The rows of a size's processes. `lost`: {name: why}; who is not timed at one size is not tried at a larger one."""
+    scene = f"four-bar:{loops}"
+    for one in [one for one in contenders if one.name in lost]:
+        lab.skip(Cell("bench", scene, (one,), role=f"{role}{LEFT_OUT}"), "excluded", lost[one.name])
+    rows = rows_of(measure(lab, scene, [one for one in contenders if one.name not in lost], processes=lab.settings["processes"],
+                           repetitions=lab.settings["samples"], settings=settings, role=role))
+    timed_once = set(rows.implementation[rows.status == "ok"])
+    lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
+             if row.implementation not in timed_once and row.status != "dropped"}
+    return rows
 
 
 def own(lab):

@@ -130,6 +130,21 @@ def test_growth_is_of_own_code_that_serves_the_form(measured):
     assert settings[:2] == ("--scheme", "saddle-point") and settings[2:] == plan.FIRST
 
 
+def test_growth_tries_nobody_at_a_larger_size_who_was_too_slow_at_one(measured):
+    measured.said = lambda scene, names: rows(**{name.replace("/", "_"): "slower" for name in names})
+    lab = Asked(large=[49, 160])
+    plan.run(lab, "growth")
+    assert [names for _, _, names, _ in measured.asked] == [["own/x"], []]
+    assert lab.skipped == [("four-bar:160", "own/x", "excluded", "not timed at N = 49: slower")]
+
+
+def test_three_scenes_have_a_control(measured):
+    measured.said = lambda scene, names: rows(one_a=2.0, one_b=3.0)
+    plan.run(Asked(problems=[], examples=[], fills=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]), "scenes")
+    assert [scene for role, scene, names, _ in measured.asked if role == "fill" and "one/a+twin" in names] == [
+        f"four-bar:49,fill={fill}" for fill in (0.1, 0.3, 0.5)]
+
+
 def test_after_a_look_at_everyone_those_are_timed_that_are_near_and_agree(measured):
     """A look is a few steps; who does not serve the scene, is far behind or disagrees is not timed further."""
     measured.said = lambda scene, names: rows(one_a=2.0, one_b=4.1, own_x=9.0, own_y="unsupported")
@@ -138,11 +153,11 @@ def test_after_a_look_at_everyone_those_are_timed_that_are_near_and_agree(measur
     assert [(role, scene.rpartition("/")[2]) for role, scene, _, _ in measured.asked[::2]] == [
         ("problem-look", "a01_pendulum.json"), ("fill-look", "four-bar:49,fill=0.5"), ("example-look", "coupler.json")]
     (_, _, looked, look), (role, _, names, problem), _, (_, _, _, fill), *_ = measured.asked
-    assert len(looked) == 4 and role == "problem" and names == ["one/a", "own/x"]
+    assert len(looked) == 4 and role == "problem" and names == ["one/a", "own/x", "one/a+twin"]
     assert "--steps" in look and "--steps" not in problem
     assert problem[problem.index("--step") + 1] == "0.001" and "--step" not in fill
     gates = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene]
-    assert [[one.name for one in cell.contenders] for cell in gates] == [names, ["one/b"]] and gates[0].settings[:2] == ("--step", "0.001")
+    assert [[one.name for one in cell.contenders] for cell in gates] == [names[:2], ["one/b"]] and gates[0].settings[:2] == ("--step", "0.001")
     lab.wrong, measured.asked[:] = ("one/a",), []
     plan.run(lab, "scenes")
     assert measured.asked[1][2] == ["own/x"]

@@ -51,7 +51,8 @@ def test_only_those_that_the_gate_agrees_with_are_timed(monkeypatch, names, expe
     lab = SimpleNamespace(contenders=[Contender(name, name, "x") for name in names], registry=REGISTRY, settings=SETTINGS, run=run)
     plan.run(lab, "alternatives")
     assert [one.name for cell in cells for one in cell.contenders] == expected
-    assert timed == [name for name in expected if VERDICTS[name] == "agrees"]
+    good = [name for name in expected if VERDICTS[name] == "agrees"]
+    assert timed == [*good, *(["one/a+twin"] if good else [])]
 
 
 def test_ratios_and_reasons():
@@ -60,6 +61,12 @@ def test_ratios_and_reasons():
     assert (rows.status["one/a_wrong"], rows.reason["one/a_wrong"]) == ("disagrees", "why")
     late = made(gate("dropped"))["alternatives"]
     assert set(late.status) == {"dropped"} and all(reason.endswith("slow") for reason in late.reason)
+
+
+def test_controls_are_apart():
+    records = [bench(number, **{"a": 10.0, "a_metis": 12.0, "a+twin": 10.0 + 0.01 * number}) for number in (1, 2, 3)]
+    found = made(gate(), *records)
+    assert list(found["controls"].implementation) == ["one/a"] and list(found["alternatives"].alternative) == ["one/a_metis", "one/a_wrong"]
 
 
 def test_page_and_sentences():

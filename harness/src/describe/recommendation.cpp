@@ -47,7 +47,7 @@ bool is_candidate(const Rule& rule, Scheme scheme, const std::string& variant) {
          std::ranges::find(found->second, variant) != found->second.end();
 }
 
-/// By layer; the candidate of the least time times caution first, then by time.
+/// By layer; the candidate of the least time first, then by time.
 json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
   std::vector<json> result;
   std::string taken;
@@ -62,9 +62,9 @@ json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot
                       {"step_us", us},
                       {"low_us", us * time.low},
                       {"high_us", us * time.high}});
-    if (is_candidate(rule, scheme, variant.name) && us * time.caution < least) {
+    if (is_candidate(rule, scheme, variant.name) && us < least) {
       taken = variant.name;
-      least = us * time.caution;
+      least = us;
     }
   }
   const auto layer_and_time = [](const json& one) {
@@ -108,20 +108,16 @@ json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
   return result;
 }
 
-/// What is compared: {implementation, step_us, cautious_us, refused}; times null where refused.
+/// What is compared: {implementation, step_us, refused}; the time null where refused.
 json candidates(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
   json result = json::array();
   for (const TimedVariant& variant : rule.variants) {
     if (!is_candidate(rule, scheme, variant.name)) continue;
     const std::string refused = refusal(variant, scheme, scene, why_not);
-    result.push_back({{"implementation", variant.name},
-                      {"step_us", nullptr},
-                      {"cautious_us", nullptr},
-                      {"refused", nullptr}});
+    result.push_back(
+        {{"implementation", variant.name}, {"step_us", nullptr}, {"refused", nullptr}});
     if (refused.empty()) {
-      const StepTime& time = variant.times.at(scheme);
-      result.back()["step_us"] = step_us(time, scene);
-      result.back()["cautious_us"] = step_us(time, scene) * time.caution;
+      result.back()["step_us"] = step_us(variant.times.at(scheme), scene);
     } else {
       result.back()["refused"] = refused;
     }

@@ -23,9 +23,8 @@ using WhyNot = std::function<std::string(const std::string& variant, Scheme sche
 /// - no_recommendation: the reason why that is empty, or null;
 /// - nearest {scene, distance, fastest, step_us}: the measured scene that is nearest in
 ///   kDistanceFeatures, the distance the root of the sum of their squared log ratios; or null;
-/// - rule {set, machine, commit, held, candidates [{implementation, step_us, cautious_us (times its
-///   caution), refused}], the times or refused null, outside [features outside of those of all
-///   measured scenes]}, or null.
+/// - rule {set, machine, commit, held, candidates [{implementation, step_us, refused}], the time or
+///   refused null, outside [features outside of those of all measured scenes]}, or null.
 nlohmann::json recommendation_json(const std::optional<Rule>& rule,
                                    const nlohmann::json& description, const WhyNot& why_not);
 

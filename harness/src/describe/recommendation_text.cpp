@@ -33,10 +33,10 @@ std::string why_text(const json& d) {
   for (const json& one : d["rule"]["candidates"]) {
     const std::string name = one["implementation"];
     compared.push_back(one["refused"].is_null()
-                           ? fmt::format("{} {:.3g} us", name, one["cautious_us"].get<double>())
+                           ? fmt::format("{} {:.3g} us", name, one["step_us"].get<double>())
                            : fmt::format("{}: {}", name, one["refused"].get<std::string>()));
   }
-  return fmt::format("the least of those compared, with caution: {}; {}", fmt::join(compared, ", "),
+  return fmt::format("the least of those compared: {}; {}", fmt::join(compared, ", "),
                      d["scheme"]["reason"].get<std::string>());
 }
 

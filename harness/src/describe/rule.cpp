@@ -60,10 +60,7 @@ TimedVariant read_variant(const std::string& name, const json& value) {
     const auto found = value.find(name_of(scheme));
     if (found == value.end() || found->is_null()) continue;
     StepTime& time = result.times[scheme];
-    time = {{},
-            read_number(*found, "caution", 1.0),
-            read_number(*found, "low", 0.0),
-            read_number(*found, "high", 0.0)};
+    time = {{}, read_number(*found, "low", 0.0), read_number(*found, "high", 0.0)};
     for (const auto& [term, us] : found->at("coefficients").items()) {
       time.terms.push_back(read_term(found->at("coefficients"), term));
     }

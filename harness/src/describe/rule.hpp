@@ -19,11 +19,9 @@ struct TimeTerm {
   double us = 0.0;  ///< at least 0
 };
 
-/// Time of a step in us: the sum over terms of us times the features is what is predicted; factors
-/// give what is compared and the range.
+/// Time of a step in us: the sum over terms of us times the features; factors give its range.
 struct StepTime {
   std::vector<TimeTerm> terms;
-  double caution = 1.0;  ///< at least 1: more, the more its times scatter about the predicted
   double low = 1.0, high = 1.0;
 };
 
@@ -51,7 +49,7 @@ struct MeasuredScene {
 struct Rule {
   std::string set, machine, commit;
   /// Variants of libraries with a time in that form, at most kMostCandidates in all: the one
-  /// whose time is the least, times its caution, is taken.
+  /// whose time is the least is taken.
   std::map<Scheme, std::vector<std::string>> candidates;
   HeldOut held;
   std::vector<TimedVariant> variants;
