@@ -5,13 +5,12 @@
 
 namespace mbs {
 
-KnownMotion::KnownMotion(const Model& model, double t)
-    : model_(model),
-      positions_(model.driven_points().size()),
-      velocities_(positions_.size()),
-      accelerations_(positions_.size()) {
-  if (!positions_.empty()) driven_.assign(model.points().size(), -1);
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
+KnownMotion::KnownMotion(const Model& model, double t) : model_(model), time_(t) {
+  const std::size_t driven = model.driven_points().size();
+  if (driven == 0 && model.driven_values().empty()) return;  // judges make one for each state
+  for (auto* motion : {&positions_, &velocities_, &accelerations_}) motion->resize(driven);
+  if (driven != 0) driven_.assign(model.points().size(), -1);
+  for (std::size_t i = 0; i < driven; ++i) {
     driven_[static_cast<std::size_t>(model.driven_points()[i].point)] = static_cast<int>(i);
   }
   set_time(t);

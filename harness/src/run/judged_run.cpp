@@ -113,6 +113,7 @@ void JudgedRun::take(const StepOutcome& outcome) {
   const bool is_looked_at =
       watch_.is_needed() && (step >= next_look_ || step == steps_ ||
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
+  if (!is_judged && !is_before && !is_looked_at && !half_ && !observer_) return;
   State& now = is_before ? samples_[waiting_].before : state_;
   if (is_before || (is_looked_at && !is_judged)) {
     copy(now);

@@ -2,19 +2,24 @@
 #include "run/sampled_time.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace mbs {
 namespace {
 
-/// What a lap of no work seems to take, s.
+/// What a lap of no work seems to take on average, s: the least of single ones would be too little
+/// where the clock goes in steps of 10 ns.
 double reading() {
   static const double least = [] {
-    auto found = SampledTime::Clock::duration::max();
-    for (int i = 0; i < 16; ++i) {
+    constexpr int kTimes = 8, kReadings = 16;
+    double found = std::numeric_limits<double>::infinity();  // without interruptions
+    for (int i = 0; i < kTimes; ++i) {
       const auto begin = SampledTime::Clock::now();
-      found = std::min(found, SampledTime::Clock::now() - begin);
+      auto end = begin;
+      for (int j = 0; j < kReadings; ++j) end = SampledTime::Clock::now();
+      found = std::min(found, std::chrono::duration<double>(end - begin).count() / kReadings);
     }
-    return std::chrono::duration<double>(found).count();
+    return found;
   }();
   return least;
 }
@@ -22,7 +27,7 @@ double reading() {
 }  // namespace
 
 void SampledTime::add(double time) {
-  time = std::max(0.0, time - reading());
+  time -= reading();  // of a short lap it may be below 0, which others make up for
   if (laps_ < kFirst) {
     first_ += time;
   } else {
@@ -32,8 +37,9 @@ void SampledTime::add(double time) {
 }
 
 double SampledTime::total() const {
-  if (samples_ == 0) return first_;
-  return first_ + later_ / static_cast<double>(samples_) * static_cast<double>(laps_ - kFirst);
+  if (samples_ == 0) return std::max(0.0, first_);
+  const double later = later_ / static_cast<double>(samples_);
+  return std::max(0.0, first_ + later * static_cast<double>(laps_ - kFirst));
 }
 
 }  // namespace mbs
