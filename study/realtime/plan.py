@@ -17,7 +17,7 @@ SET_UP = 4.0         # s
 JUDGED = ("harness/scenes/double_pendulum.json", "harness/scenes/four_bar_2.json", "harness/scenes/problems/spatial_slider_crank.json",
           "harness/scenes/problems/half_car.json", "four-bar:10", "scissors:5", "loop:12", "ladder:12", "harness/scenes/problems/a04_bricard.json",
           "vehicle:4", "four-bar:40", "scissors:20", "robot:10", "grid:5x5", "bodies:10")  # scenes, from small to large
-JUDGED_STEP, JUDGED_STEPS, JUDGED_RUNS = 1e-3, 16000, 3
+JUDGED_STEP, JUDGED_STEPS, JUDGED_RUNS = 1e-3, 16000, 5
 FASTEST = ("compiled_chains/sweeps", "compiled_ldl/fronts")  # what judging costs most beside
 NULL = "../study/realtime/null_process"  # as seen from the build
 
@@ -113,4 +113,4 @@ def search(probe, count):
     return low
 
 
-columns, run = by_share({"distributions": (0.23, distributions), "judging": (0.12, judging), "largest": (0.65, largest)})
+columns, run = by_share({"distributions": (0.23, distributions), "judging": (0.17, judging), "largest": (0.60, largest)})
