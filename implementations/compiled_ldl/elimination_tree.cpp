@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "program.hpp"
+#include "scalar.hpp"
 
 namespace mbs::compiled_ldl {
 namespace {
@@ -17,7 +18,7 @@ double widening(int pivots, int border) { return pivots > kPanel && border > 0 ?
 }  // namespace
 
 /// Constants fitted to measurements of the standard scenes and of filled four-bars, each in several
-/// orders.
+/// orders, with AVX-512. Shorter registers take a pack of eight numbers in turns.
 FrontTime front_time(int pivots, int border, int nodes, int width) {
   if (width == 1) {  // many side by side: arithmetic counts, others fill what is left
     const double rows = pivots + border;
@@ -26,7 +27,8 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
   FrontTime time{widening(pivots, border), 0.0};
   for (int from = 0; from < pivots; from += kPanel) {
     const int panel = std::min(kPanel, pivots - from), inside = pivots - from - panel;
-    const double packs = std::ceil(static_cast<double>(inside + border) / width);
+    const double packs =
+        std::ceil(static_cast<double>(inside + border) / width) * width / kRegisterDoubles;
     time.work += panel * (20.0 + packs * (panel + 0.35 * inside));
     time.latency += 5.0 * std::ceil(panel / 2.0);  // a division for two pivots
     if (border == 2 && nodes == 1 && pivots <= kPanel) {

@@ -68,6 +68,17 @@ inline void set_number(V& v, int i, F x) {
   }
 }
 
+/// v −= x w, of which numbers before that of place `from` do not count.
+template <typename V, typename F>
+inline void subtract(V& v, const V& w, F x, int from) {
+  if constexpr (!std::is_same_v<V, Halves>) {
+    v -= w * x;
+  } else {
+    if (from < 4) v.low -= w.low * x;
+    v.high -= w.high * x;
+  }
+}
+
 /// Four of eight numbers, from the first or, `kFrom` 4, from the fifth on.
 template <int kFrom, typename V>
 inline auto four_of(const V& v) {
@@ -199,10 +210,13 @@ inline bool decompose(V (&a)[P], V (&l)[P], F (&inverse)[P]) {
         w = (a[k + 3][k + 3] - r * (r * inverse[k])) - r2 * r2 * inverse[k + 1];
       }
     }
-    a[k + 1] -= a[k] * l_pair;
+    subtract(a[k + 1], a[k], l_pair, k + 1);
     l[k + 1] = a[k + 1] * inverse[k + 1];
 #pragma GCC unroll 8
-    for (int j = k + 2; j < P; ++j) a[j] = (a[j] - a[k] * l[k][j]) - a[k + 1] * l[k + 1][j];
+    for (int j = k + 2; j < P; ++j) {
+      subtract(a[j], a[k], l[k][j], j);
+      subtract(a[j], a[k + 1], l[k + 1][j], j);
+    }
   }
   return accepted;
 }
@@ -223,7 +237,7 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
       if (i <= k || i >= P) set_number(column, i, F(0));
     }
 #pragma GCC unroll 8
-    for (int j = 0; j <= k; ++j) m[j] -= column * m[j][k];
+    for (int j = 0; j <= k; ++j) subtract(m[j], column, m[j][k], k + 1);
   }
 }
 
