@@ -10,8 +10,7 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.studyset import (StudySet, beginning, listed, need_own, need_records, need_tables, opened, reopen, select, start, unfinished,
-                                 writable)
+from study.core.studyset import StudySet, beginning, listed, need_own, need_records, opened, reopen, select, start, unfinished, writable
 
 TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "merge": "merge.main", "add": "add", "store": "store",
          "new": "new", "paper": "paper.main", "sweep": "sweep"}  # in study/tools
@@ -84,7 +83,6 @@ def _run_here(profile, only, chosen, folder, wait):
             studyset = start(folder, profile, only, chosen)
         columns = profiles.columns_of(profile, chosen)
         reopen(studyset, columns)
-        need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
               f"{duration(profiles.planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)

@@ -33,9 +33,8 @@ def _row(rows, runs, both):
     lost = rows[rows.status != "ok"]
     ratio = timing.ratio(timing.apart(rows.assign(implementation=rows.setting)), both[1], both[0])
     why = "" if lost.empty or ratio.value > 0 else f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}"
-    found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
-             "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
-             "reason": why, "record": " ".join(dict.fromkeys(rows.record))}
+    found = ratio.columns() | {"processes": rows.process.nunique(), "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
+                               "reason": why, "record": " ".join(dict.fromkeys(rows.record))}
     for place, setting, run in zip(("first", "second"), both, runs):
         found[f"{place}_us"] = rows.step_us[(rows.setting == setting) & (rows.status == "ok")].median()
         if run:

@@ -54,7 +54,9 @@ def table(engines, ours, rounds, own):
         mine, paired = ours[ours.subject == subject], timing.Paired(timed)
         sides = {side: (every, _timed(every, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
         for name, of_engine in _timed(theirs, timed).groupby("name", sort=False):
-            for limit, best in _reached(of_engine):
+            reached = {one.key: one for one in (_fastest(of_engine, limit) for limit in LIMITS) if one is not None}
+            for best in reached.values():  # who is the fastest for several limits is there once, with the smallest that it meets
+                limit = min(limit for limit in LIMITS if best.error <= limit)
                 for side, (every, compared) in sides.items():
                     yield _row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired)
 
@@ -83,12 +85,6 @@ def _timed(rows, timed):
     """Finished rows that were timed in the rounds, with the median of these times."""
     times = rows.key.map(timed.groupby("implementation").time.median()).astype(float)
     return finished(rows.assign(time=times.where(rows.time.notna())))
-
-
-def _reached(rows):
-    """[(limit, the fastest row that meets it)]; a row that is the fastest for several is given once, with the smallest limit that it meets."""
-    best = {one.key: one for one in (_fastest(rows, limit) for limit in LIMITS) if one is not None}
-    return [(min(limit for limit in LIMITS if one.error <= limit), one) for one in best.values()]
 
 
 def _fastest(rows, error):

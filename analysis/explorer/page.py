@@ -5,6 +5,7 @@ from scipy import special
 
 from analysis.accuracy.winners import NEAR
 from analysis.core import timing
+from analysis.core.gather import gather
 from analysis.core.registry import ANCHOR
 from analysis.core.style import Look
 from analysis.core.view import Folder, facts_of
@@ -33,12 +34,11 @@ def context(folder):
 def others(folder):
     """Of each other processor a stored set beside this one, of the same commit where there is one."""
     mine = facts_of(folder)["context"]
-    stored = [path.parent for path in sorted(folder.parent.glob("*/set.json")) if any((path.parent / "raw").glob("*.tar.xz"))]
-    contexts = {one: facts_of(one)["context"] for one in stored}
-    found = {}
-    for one in sorted(stored, key=lambda one: contexts[one].get("commit") != mine.get("commit")):
-        found.setdefault(contexts[one].get("cpu_model"), one)
-    return [one for model, one in found.items() if model not in (None, "", mine.get("cpu_model"))]
+    contexts = {path.parent: facts_of(path.parent)["context"] for path in sorted(folder.parent.glob("*/set.json"))
+                if any((path.parent / "raw").glob("*.tar.xz"))}
+    found = gather((contexts[one].get("cpu_model"), one)
+                   for one in sorted(contexts, key=lambda one: contexts[one].get("commit") != mine.get("commit")))
+    return [first for model, (first, *_) in found.items() if model not in (None, "", mine.get("cpu_model"))]
 
 
 def _about(name, registries):
@@ -59,13 +59,11 @@ ASKED = (  # of the examples: the least fill of the mechanism, %, and who is lef
 
 def examples(contests, registry):
     """[{"case", "state", "take"}]: each on the largest mechanism of its kind, of another family."""
-    used, known = set(), {}
-    for one in contests:  # of a scene and form the one with most samples, as the page takes it
-        if (one.scene, one.form) not in known or len(one.rows) > len(known[one.scene, one.form].rows):
-            known[one.scene, one.form] = one
+    used, kinds = set(), gather(((one.scene, one.form), one) for one in contests)
+    known = [max(same, key=lambda one: len(one.rows)) for same in kinds.values()]  # that with most samples, as the page takes it
     for low, high, without, words in ASKED:
         names = [name for name in registry.variants if not ("own" in without and name in registry.own or "gpl" in without and registry.gpl(name))]
-        ranked = [(one, ranking) for one in known.values() if one.family not in used and low <= one.fill < high
+        ranked = [(one, ranking) for one in known if one.family not in used and low <= one.fill < high
                   and one.form == ("saddle-point" if "penalty" in without else "penalty") for ranking in [one.rank(names)] if ranking]
         if ranked:
             one, ranking = max(ranked, key=lambda pair: pair[0].n)

@@ -51,17 +51,13 @@ def _row(record, cell, setting, limit, solutions, own, truth):
     jumps_nowhere = cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR
     verdict = verdicts.verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
         solutions and record.done and status not in NOT_RUN) else ""
+    command = iter(record.command)  # what repeats the run, without the files that the study reads
+    words = (word for word in command if not (word == "--json" or word in ("--trajectory", "--output", "--every") and next(command)))
     return {"axis": cell.axis, "value": cell.label, "implementation": record.cell["contenders"][0], "setting": setting, "status": status,
             "reason": reason, "failed_at": failed_at, "true_error": error, "truth": truth, "truth_error": own, "allowed": limit,
             "verdict": verdict, "near": cell.near, "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
-            "command": _shown(record.command) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
-
-
-def _shown(command):
-    """What repeats a run, without the files that the study reads."""
-    words = iter(command)
-    return shlex.join(word for word in words if not (word == "--json" or word in ("--trajectory", "--output", "--every") and next(words)))
+            "command": shlex.join(words) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
 
 
 def extreme(table):

@@ -113,9 +113,9 @@ def few(trials, standard, others):
     return known[:standard or None] + (random.Random(1).sample(rest, min(others, len(rest))) if others else rest)
 
 
-def _trial(kind, label, motion, step, seconds, settings, **more):
-    return Extreme(kind, label, "", motion, motion.document(), step=step, steps=round(seconds / step), length=motion.shortest,
-                   settings=settings, **more)
+def _trials(kind, label, motion, steps, seconds, settings, **more):
+    return [Extreme(kind, label, "", motion, motion.document(), step=step, steps=round(seconds / step), length=motion.shortest,
+                    settings=settings, **more) for step in steps]
 
 
 def _near():
@@ -124,53 +124,44 @@ def _near():
             label = f"{name} at {gap:g}"
             for rate in (1.0, -2.0):
                 driven = replace(linkage, rate=rate)
-                for step in STEPS:
-                    yield _trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN + LOOSE, near=gap)
+                yield from _trials(f"driven {kind}", f"{label}, {rate:g} per s", driven, STEPS, 6.4 / abs(rate), DRIVEN + LOOSE, near=gap)
             narrow = name in ("rhombus", "kite", "quick return")  # what follows the crank turns over within this angle
             if gap >= 1e-3 or not narrow:
                 free = replace(linkage, driven=False, finest=gap if narrow else 1.0)
-                for step in STEPS:
-                    yield _trial(f"free {kind}", label, free, step, 3.2, FREE + LOOSE, near=gap)
+                yield from _trials(f"free {kind}", label, free, STEPS, 3.2, FREE + LOOSE, near=gap)
             if name in MORE:
                 wheel = replace(free, followers=(*free.followers, Wheel("W", free.points[-1])))
-                for step in STEPS[:2]:
-                    yield _trial("free, with a wheel", label, wheel, step, 3.2, FREE, near=gap)
-                for step in STEPS[:2]:
-                    yield _trial("free, carried", label, replace(free, carried=0.5), step, 3.2, DRIVEN, near=gap)
+                yield from _trials("free, with a wheel", label, wheel, STEPS[:2], 3.2, FREE, near=gap)
+                yield from _trials("free, carried", label, replace(free, carried=0.5), STEPS[:2], 3.2, DRIVEN, near=gap)
 
 
 def _passing():
     for kind, linkages, harmless in (("passage", PASSING, PASSAGE), ("far", FAR, REGULAR)):
-        for name, linkage in linkages.items():
-            for rate in (1.0, -2.0):
-                driven, label = replace(linkage, rate=rate), f"{name}, {rate:g} per s"
-                for step in STEPS[1:]:
-                    yield _trial(f"{kind}, driven", label, driven, step, 20 / abs(rate), DRIVEN[:4], harmless=harmless)
-                for step in STEPS[1:]:
-                    yield _trial(f"{kind}, free", label, replace(driven, driven=False), step, 6.4, FREE, harmless=harmless)
+        for (name, linkage), rate in product(linkages.items(), (1.0, -2.0)):
+            driven, label = replace(linkage, rate=rate), f"{name}, {rate:g} per s"
+            yield from _trials(f"{kind}, driven", label, driven, STEPS[1:], 20 / abs(rate), DRIVEN[:4], harmless=harmless)
+            yield from _trials(f"{kind}, free", label, replace(driven, driven=False), STEPS[1:], 6.4, FREE, harmless=harmless)
 
 
 def _worked():
     """Where drivers or dampers do work, so that energy is not conserved."""
     for step in (1e-2, 5e-3, STEP):
-        for speed in (0.5, 5.0):
-            for rate, gravity in ((1.0, 0.0), (4.0, 3.0)):
-                carried = Linkage((("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed)
-                yield _trial("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", carried, step, 5.0, DRIVEN, harmless=REGULAR)
+        for speed, (rate, gravity) in product((0.5, 5.0), ((1.0, 0.0), (4.0, 3.0))):
+            carried = Linkage((("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed)
+            yield from _trials("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", carried, [step], 5.0, DRIVEN, harmless=REGULAR)
         for damping in (0.4, 1.0, 10.0):
-            yield _trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR)
+            yield from _trials("damped rod", f"{damping:g} N m s", Damped(damping), [step], 5.0, DRIVEN, harmless=REGULAR)
 
 
 def _uneven():
     """Parts of which one is far lighter, drives of which one is a little faster."""
-    for mass in MASSES:
-        for step in STEPS[:2]:
-            yield _trial("light part", f"lower rod of {mass:g} kg", LightEnd(mass), step, 8.0, FREE, near=mass)
-            yield _trial("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), step, 8.0, FREE, near=mass)
+    for mass, step in product(MASSES, STEPS[:2]):
+        yield from _trials("light part", f"lower rod of {mass:g} kg", LightEnd(mass), [step], 8.0, FREE, near=mass)
+        yield from _trials("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), [step], 8.0, FREE, near=mass)
     for share in UNEVEN:
-        yield _trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share)
-        yield _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share)
-        yield _trial("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), STEP, 6.4, DRIVEN, near=share)
+        yield from _trials("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), [STEP], 5.0, FREE, near=share)
+        yield from _trials("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), [STEP], 5.0, FREE, near=share)
+        yield from _trials("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), [STEP], 6.4, DRIVEN, near=share)
 
 
 def _small():
@@ -179,19 +170,19 @@ def _small():
         linkages = {"rhombus": four_bar(size, size, size, (1 - 1e-5) * size), "crank-rocker": four_bar(0.39999 * size, size, 0.4 * size, size),
                     "far": four_bar(0.3 * size, size, 0.8 * size, 0.9 * size)}
         for (name, linkage), step in product(linkages.items(), STEPS[:2]):
-            yield _trial("small part, driven", f"{name} of {size:g} m", Beside(linkage), step, 6.4, DRIVEN, near=size)
+            yield from _trials("small part, driven", f"{name} of {size:g} m", Beside(linkage), [step], 6.4, DRIVEN, near=size)
             if name != "rhombus":
-                yield _trial("small part, free", f"{name} of {size:g} m", Beside(replace(linkage, driven=False)), step, 3.2, FREE, near=size)
+                yield from _trials("small part, free", f"{name} of {size:g} m", Beside(replace(linkage, driven=False)), [step], 3.2, FREE, near=size)
 
 
 def _long():
     for step in STEPS[:2]:
         for loops in (1, 2, 5):
-            yield _trial("100 s", f"{loops} loops", Chain(loops), step, LONG, FREE)
+            yield from _trials("100 s", f"{loops} loops", Chain(loops), [step], LONG, FREE)
         for name, linkage in FAR.items():
-            yield _trial("100 s", f"{name}, driven", linkage, step, LONG, DRIVEN[:2])
+            yield from _trials("100 s", f"{name}, driven", linkage, [step], LONG, DRIVEN[:2])
         for name, linkage in FAR.items():
-            yield _trial("100 s", f"{name}, free", replace(linkage, driven=False), step, LONG, FREE)
+            yield from _trials("100 s", f"{name}, free", replace(linkage, driven=False), [step], LONG, FREE)
 
 
 def _standard():

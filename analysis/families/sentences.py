@@ -81,10 +81,12 @@ def meanings(rows):
 
 
 def _taken(rows):
-    """The cases of a form in words."""
-    if not (known := meanings(rows)):
-        return rows.library.iloc[0]
-    return "; ".join(f"{where(row)}: {row['library']}" for row in rows.to_dict("records")) + f" ({known})"
+    """The cases of a form in words: first those that differ from most."""
+    usual = rows.groupby("library").scenes.sum().idxmax()
+    others = rows[rows.library != usual]
+    if others.empty:
+        return usual
+    return "; ".join(f"{row['library']} if {where(row).replace(', ', ' and ')}" for row in others.to_dict("records")) + f"; else {usual} ({meanings(others)})"
 
 
 def _lost(found, count):

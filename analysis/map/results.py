@@ -96,8 +96,7 @@ class Results:
 
     def over_sizes(self, slow, fast, low=0, high=float("inf"), reaching=0):
         """[Versus] of the best of two groups at natural fill, by size; none if they do not reach so many variables."""
-        found = [self.best(self.natural(size), slow, fast) for size in self.sizes if low <= size <= high]
-        found = [one for one in found if one]
+        found = [one for size in self.sizes if low <= size <= high and (one := self.best(self.natural(size), slow, fast))]
         return found if found and found[-1].size >= reaching else []
 
     def lost(self, scene, names):

@@ -26,11 +26,9 @@ def context(tables, view):
 
 def automatic(rows):
     """(runs whose automatic penalty factor is not ok though another one at their step is; those where none is)"""
-    known, missed, none = valleys(rows), [], []
-    for row in rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict("records"):
-        valley = known.get(row["loops"], {}).get(row["step"])
-        (missed if valley else none).append(row | {"valley": valley})
-    return missed, none
+    known, lost = valleys(rows), rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict("records")
+    lost = [row | {"valley": known.get(row["loops"], {}).get(row["step"])} for row in lost]
+    return [row for row in lost if row["valley"]], [row for row in lost if not row["valley"]]
 
 
 def valleys(rows):

@@ -142,7 +142,7 @@ def test_the_rule_compares_times_and_holds_on_families_left_out():
     assert found["times"]["own/x"]["layer"] == "own" and found["times"]["one/a"]["penalty"]["low"] <= 1
     assert {row["scene"]: row["fastest"] for row in found["scenes"]}["beam:10"] == "one/b"
     assert rule.missed(tables["held"]).empty
-    assert [(form, name) for form, name, text, _ in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
+    assert [(form, name) for form, name, text in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
 
 
 def test_a_rule_is_carried_to_what_was_measured_elsewhere():
@@ -197,7 +197,7 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
     described, parted, own = sentences.cases(tables, VIEW)
     assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
-        "c < 10: one/a; c ≥ 10: one/b (c: non-zeros of L a column); on families left out")
+        "one/b if c ≥ 10; else one/a (c: non-zeros of L a column); on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
@@ -206,10 +206,10 @@ def test_cases_by_hand_are_told_by_letters():
     case = {"scheme": "penalty", "scenes": 1} | {f"{end}_{name}": None for name in by_hand.SHOWN for end in ("least", "below")}
     rows = [case | {"library": "one/a", "below_dense": 26.0, "below_per_column": 20.0}, case | {"library": "one/b", "below_dense": 26.0, "least_per_column": 20.0},
             case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
-    below = "p < 26, c < 20: one/a; p < 26, c ≥ 20: one/b; "
+    below = "one/b if p < 26 and c ≥ 20; one/c if p ≥ 26"
     meant = " (p: operations of a factorization, in % of a full L's; c: non-zeros of L a column)"
-    assert sentences._taken(pandas.DataFrame(rows)) == below + "p ≥ 26, c ≥ 8: one/c; p ≥ 26, c < 8: one/a" + meant
-    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "p ≥ 26: one/c" + meant
+    assert sentences._taken(pandas.DataFrame(rows)) == below + " and c ≥ 8; else one/a" + meant
+    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "; else one/a" + meant
     assert sentences._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"
 
 

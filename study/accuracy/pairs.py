@@ -1,6 +1,7 @@
 # Two settings of one implementation at one step: their processes follow each other, a number after the other; runs of
 # their own tell the class of their errors.
 from analysis.accuracy.pairs import PAIRS, STEP
+from analysis.core.gather import gather
 from study.accuracy.runs import Runs
 
 DENSE = 1000   # variables, of dense contenders at most
@@ -28,8 +29,8 @@ def _groups(runs):
         for kind in (False, True):
             mine = [one for one in group if (one.variant in dense) == kind]
             if kind and 2 * runs.subject.loops + 2 > DENSE:
-                runs.records += [runs.lab.skip(runs.run_cell(one, "default", STEP), "excluded",
-                                               f"a dense step of more than {DENSE} variables takes too long") for one in mine]
+                for one in mine:
+                    runs.lab.skip(runs.run_cell(one, "default", STEP), "excluded", f"a dense step of more than {DENSE} variables takes too long")
                 continue
             quick = runs.quick(runs.subject.scene, STEP, mine, BEHIND, kind)
             for name, mine in _serving(runs, [one for one in mine if one in quick]).items():  # in the order of the registry
@@ -39,12 +40,9 @@ def _groups(runs):
 
 def _serving(runs, contenders):
     """{setting: those that serve it and another one of a pair with it}"""
-    found = {}
-    for both in (both for pairs in PAIRS.values() for both in pairs if set(both) <= set(runs.settings)):
-        serving = runs.serving(both[0], runs.serving(both[1], contenders))
-        for name in both if serving else ():
-            found[name] = [one for one in contenders if one in serving or one in found.get(name, [])]
-    return found
+    asked = [both for pairs in PAIRS.values() for both in pairs if set(both) <= set(runs.settings)]
+    serving = gather((name, one) for both in asked for one in runs.serving(both[0], runs.serving(both[1], contenders)) for name in both)
+    return {name: [one for one in contenders if one in some] for name, some in serving.items()}
 
 
 def _own(runs, groups):

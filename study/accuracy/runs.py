@@ -31,7 +31,7 @@ class Runs:
         own = [one for one in lab.contenders if one.variant in lab.registry.own]
         self.layers = {name: group for name, group in (("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
         self.names = {one.name: one for group in self.layers.values() for one in group}
-        self.longest, self.records, self.known = lab.settings["longest"], [], None
+        self.longest, self.records, self.known = lab.settings["longest"], {}, None  # records: by name
         self.chosen = {}  # {scene: {(setting, step): contenders that are timed}}
 
     def serving(self, name, contenders):
@@ -47,7 +47,7 @@ class Runs:
 
     def simulate(self, jobs):
         """Runs of (contender, setting, step, scene, duration), on all cores, as long as the budget lasts."""
-        self.records += self.lab.run([self.run_cell(*job) for job in jobs], drop=True)
+        self.records |= {one.name: one for one in self.lab.run([self.run_cell(*job) for job in jobs], drop=True)}
 
     def run_cell(self, one, name, step, scene=None, duration=None):
         words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
@@ -56,7 +56,7 @@ class Runs:
 
     def row(self, record):
         """What a run came to; its record is kept."""
-        self.records.append(record)
+        self.records[record.name] = record
         return points.runs([record], self.subject, self.known).to_dict("records")[0]
 
     def quick(self, scene, step, contenders, behind, dense=False):
@@ -75,8 +75,9 @@ class Runs:
         steps = self.stretch(scene, step, dense)
         steps = max(LEAST, steps // LOOK) if role == "look" else steps
         words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, "--steps", steps, *more)
-        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
-                                       role=f"{role}/{self.settings[name].file_name}", seconds=60)
+        self.records |= {one.name: one for one in timing.measure(
+            self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
+            role=f"{role}/{self.settings[name].file_name}", seconds=60)}
 
     def stretch(self, scene, step, dense=False):
         """Steps from the start that are timed: of the whole run, but no more than take a few hundredths of a second."""
@@ -86,10 +87,10 @@ class Runs:
         return int(max(LEAST, min(most, round(self.subject.duration / step))))
 
     def made(self):
-        return points.runs(_once(self.records), self.subject, self.known)
+        return points.runs(self.records.values(), self.subject, self.known)
 
     def measured(self):
-        return points.timed(_once(self.records))
+        return points.timed(self.records.values())
 
     def points(self):
         return points.points(self.made(), self.measured())
@@ -99,7 +100,3 @@ class Runs:
         second the first singular position has been passed, before which all are accurate."""
         whole = self.subject.duration
         return next((one for one in (whole, min(1.0, whole)) if one * seconds <= self.longest), None)
-
-
-def _once(records):
-    return list({record.name: record for record in records}.values())

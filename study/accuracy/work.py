@@ -12,6 +12,7 @@ from analysis.accuracy import subjects
 from analysis.accuracy.pairs import STEP
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import NEAR, meeting, winners
+from analysis.core.gather import gather
 from analysis.core.outcomes import FINISHED, pareto
 from study.accuracy.runs import Runs
 from study.core import curves
@@ -140,11 +141,8 @@ def _rounds(runs, scene, processes, open_only=False):
     if open_only:
         won = winners(table, runs.measured(), errors, runs.lab.registry.libraries)
         errors = [error for error in errors if (won[won.required == error].settled == False).any()]  # noqa: E712
-    points = {}
-    for error in errors:
-        for group in runs.layers.values():
-            for row in near(table[table.implementation.isin([one.name for one in group])], error).itertuples():
-                points.setdefault((row.setting, row.step), []).append(row.implementation)
+    points = gather(((row.setting, row.step), row.implementation) for error in errors for group in runs.layers.values()
+                    for row in near(table[table.implementation.isin([one.name for one in group])], error).itertuples())
     chosen = runs.chosen.setdefault(scene, {})
     for (name, step), contenders in points.items():
         # The same contenders in all processes, in the order of the registry.

@@ -43,7 +43,6 @@ def run(profile, only, chosen, folder, cluster, columns):
         studyset = sets.StudySet(folder)
         studyset.clear()
         sets.reopen(studyset, columns)
-        sets.need_tables(studyset)
         _workflow(studyset, cluster, columns, "all")
     for host, reason in refusals(folder).items():
         print(f"{host} is not of this set: {reason}")

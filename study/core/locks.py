@@ -51,12 +51,11 @@ def _hold(path, held, seconds, tell=lambda text: None):
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 break
-            except BlockingIOError:
-                pass
+            except BlockingIOError as error:
+                if time.monotonic() >= end:
+                    raise StudyError(held) from error
             except OSError as error:  # not every network file system has locks
                 raise StudyError(f"cannot lock {path}: {error.strerror}") from error
-            if time.monotonic() >= end:
-                raise StudyError(held)
             if not told:
                 tell("waiting until another study is done")
                 told = True

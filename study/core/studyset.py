@@ -227,7 +227,7 @@ def unfinished(studyset, columns):
 
 
 def reopen(studyset, columns):
-    """Makes the workflow run what is unfinished, and draw pages that are missing or empty."""
+    """Makes the workflow run what is unfinished, and draw pages that are missing or empty; StudyError naming a table that was changed."""
     if _empty(studyset.folder / "index.html"):
         studyset.page([*columns][-1]).unlink(missing_ok=True)  # it is drawn with each part
     for part, names in unfinished(studyset, columns).items():
@@ -235,6 +235,8 @@ def reopen(studyset, columns):
         if names or _empty(page):
             for path in (*(one for stamp in stamps for one in _there_now(studyset, stamp)), *stamps, studyset.page(part), page):
                 path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+    for part in parts():
+        need_unchanged(studyset.folder, part)
 
 
 def _there_now(studyset, stamp):
@@ -254,11 +256,6 @@ def need_records(studyset):
     for stamp in sorted((studyset.folder / ".done").glob("*/[!.]*")):
         if missing := _missing(studyset, stamp):
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")
-
-
-def need_tables(studyset):
-    for part in studyset.facts["parts"]:
-        need_unchanged(studyset.folder, part)
 
 
 def _missing(studyset, stamp):

@@ -3,6 +3,7 @@
 #
 # Each function takes times (s) and the tolerance of its integration, and returns {column of an output file: values}; numbers are the scenes'.
 import math
+from functools import partial
 
 import numpy
 from scipy.integrate import solve_ivp
@@ -34,17 +35,7 @@ def _accelerations(by, masses, force, inertia=0.0):
     return numpy.linalg.solve((by.conj().T @ (masses[:, None] * by)).real + inertia, (by.conj().T @ force).real)
 
 
-def slider_crank(times, tolerance=TOLERANCE):
-    return _slider_crank(times, tolerance, "xy", pivot=[0, 0, 0], radius=0.5, length=1.5, masses=(2, 3, 4), first=[1, 0, 0],
-                         second=[0, 1, 0], start=(numpy.pi / 2, 0), torque=10, gravity=[0, -GRAVITY, 0])
-
-
-def spatial_slider_crank(times, tolerance=TOLERANCE):
-    return _slider_crank(times, tolerance, "xyz", pivot=[0, 0.1, 0.12], radius=0.08, length=0.3, masses=(0.12, 0.5, 2),
-                         first=[0, 0, 1], second=[0, -1, 0], start=(0, 6), torque=0, gravity=[0, 0, -GRAVITY])
-
-
-def _slider_crank(times, tolerance, axes, pivot, radius, length, masses, first, second, start, torque, gravity):
+def _slider_crank(times, tolerance=TOLERANCE, *, axes, pivot, radius, length, masses, first, second, start, torque, gravity):
     """One freedom: the crank's angle from `first` to `second`; the slider is on the x axis. With places r(angle) of pin and slider and
     the mass matrix M of thin rods between them, inertia I = dr.M dr: I angle'' + dr.M ddr angle'^2 = torque + sum m g.dr."""
     pivot, first, second, gravity = map(numpy.array, (pivot, first, second, gravity))
@@ -67,6 +58,12 @@ def _slider_crank(times, tolerance, axes, pivot, radius, length, masses, first, 
         return [rate, (torque + numpy.vdot(d, weight) - numpy.vdot(d, mass @ dd) * rate**2) / numpy.vdot(d, mass @ d)]
     places = numpy.array([joints(angle)[0] for angle in integrate(derivative, times, start, tolerance)[0]])
     return {f"{name}.{axis}": places[:, i, k] for i, name in enumerate(("crank", "slider")) for k, axis in enumerate(axes)}
+
+
+slider_crank = partial(_slider_crank, axes="xy", pivot=[0, 0, 0], radius=0.5, length=1.5, masses=(2, 3, 4), first=[1, 0, 0],
+                       second=[0, 1, 0], start=(numpy.pi / 2, 0), torque=10, gravity=[0, -GRAVITY, 0])
+spatial_slider_crank = partial(_slider_crank, axes="xyz", pivot=[0, 0.1, 0.12], radius=0.08, length=0.3, masses=(0.12, 0.5, 2),
+                               first=[0, 0, 1], second=[0, -1, 0], start=(0, 6), torque=0, gravity=[0, 0, -GRAVITY])
 
 
 def governor(times, tolerance=TOLERANCE):

@@ -9,7 +9,7 @@ from study.tools.advise.choice import LEAST_STEPS
 from study.tools.advise.runner import QUICK
 from study.tools.advise.search import LOST
 
-PROJECTIONS = {"penalty": ("both", "velocity", "none"), "saddle-point": ("both", "velocity", "none")}
+PROJECTIONS = dict.fromkeys(("penalty", "saddle-point"), ("both", "velocity", "none"))
 SCHEMES = ("penalty", "saddle-point", "rattle", "rattle4", "rattle6", "multistep6")
 CHEAP = (("projections", "velocity"), ("tolerance", "one-pass"))
 OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(scheme, (change, *CHEAP)) for scheme, change in (
@@ -22,12 +22,8 @@ LONGEST = 20.0  # s, of the first probe
 
 def catalogue():
     """Scheme × projections × tolerance, a scheme's own first; of what else changes a step, what was the fastest somewhere (README.md)."""
-    found = []
-    for scheme in SCHEMES:
-        for projections, tolerance in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED)):
-            asked = {"projections": projections, "tolerance": tolerance}
-            found.append(Setting(scheme, tuple(one for one in asked.items() if one[1] not in ("both", "auto"))))
-    return [*found, *OTHERS]
+    return [*(Setting(scheme, tuple(one for one in zip(("projections", "tolerance"), values) if one[1] not in ("both", "auto")))
+              for scheme in SCHEMES for values in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED))), *OTHERS]
 
 
 def fits(setting, scene):

@@ -55,7 +55,10 @@ class Runner:
     def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
         """The row of a run. `checks`: EXACT or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the
         mean over the steps of each one's least time over the repeats; the other times are those of the first repeat."""
-        record, tolerance = self._tolerance(setting, variant, step) if setting.loosened else (None, None)
+        record = None
+        if setting.loosened and (setting.scheme, step) not in self.automatic:  # a run of one step tells the automatic tolerance
+            record = self._simulate("automatic", setting.parent, variant, step, step, 60, setting.parent.words())
+        tolerance = (setting.loosened or 0.0) * self.automatic.get((setting.scheme, step), 0.0)
         if tolerance or not setting.loosened:  # else the row is that of the run which should have told it
             repeated = ("--repeats", repeats) if repeats > 1 and checks != HALVED else ()
             every = max(1, min(int(duration / step / JUDGED), int(duration / step * self.variables / VALUES)))
@@ -106,11 +109,3 @@ class Runner:
         if not setting.changes and record.output.get("tolerance"):
             self.automatic[setting.scheme, step] = record.output["tolerance"]
         return record
-
-    def _tolerance(self, setting, variant, step):
-        """(record of a run of one step, if that must tell the automatic tolerance; what that is loosened to, m, or None)"""
-        record = None
-        if (setting.scheme, step) not in self.automatic:
-            record = self._simulate("automatic", setting.parent, variant, step, step, 60, setting.parent.words())
-        known = self.automatic.get((setting.scheme, step))
-        return record, known and setting.loosened * known

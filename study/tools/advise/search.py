@@ -122,17 +122,12 @@ class Search:
             one.reason = f"unsupported: {pilot.reason}"
         else:
             one.pilots.append(pilot)
+            beside = [other for other in parent.pilots if other.valid and other.step == pilot.step] if parent else []
             if pilot.status not in LOST:
                 self._settle(one, f"{pilot.status}: {pilot.reason}")
-            elif parent and self._harmful(pilot, parent):
+            elif pilot.valid and beside and pilot.estimate > 3.0**order * beside[0].estimate:  # a step of less than a third would mend it
                 self._settle(one, f"estimate {pilot.estimate:.2g} m at step {pilot.step:g} s, far above that of "
                                   f"{parent.setting.name} without the change")
-
-    @staticmethod
-    def _harmful(pilot, parent):
-        """Whether a change spoils what its scheme has at this step: a step of less than a third would mend it."""
-        beside = [other for other in parent.pilots if other.valid and other.step == pilot.step]
-        return pilot.valid and beside and pilot.estimate > 3.0**parent.setting.order * beside[0].estimate
 
     def _settle(self, one, reason):
         """Nothing more is tried: the longest step that is known to be good enough, if any."""

@@ -40,15 +40,17 @@ class Truth:
             if any(one is None for one in found):
                 halving, longer = halving + 1, None
                 continue
-            self.motion, between = CubicHermiteSpline(*found[0]), self._between(*found[0])
-            halved = math.inf if longer is None else self._distance(found[0][1], longer)
-            self.uncertainty = max(between, halved, self._distance(found[0][1], found[1][1]))
+            t, q, v = found[0]
+            self.motion = CubicHermiteSpline(t, q, v)
+            # Those through every other instant are off at the others; at half the distance by an eighth of that or less.
+            between = self._distance(CubicHermiteSpline(t[::2], q[::2], v[::2])(t[1:-1:2]), q[1:-1:2]) / 8
+            self.uncertainty = max(between, math.inf if longer is None else self._distance(q, longer), self._distance(q, found[1][1]))
             if self.uncertainty <= enough:
                 return
             if between > enough:
                 dense, longer = dense * DENSER, None
             else:
-                halving, longer = halving + 1, found[0][1]
+                halving, longer = halving + 1, q
 
     def every(self, step, duration):
         """Steps between two instants of a run."""
@@ -57,10 +59,6 @@ class Truth:
     def error(self, series):
         """The largest distance of a point at any instant, m."""
         return self._distance(self.motion(series["t"]), self._of(series, self.columns))
-
-    def _between(self, t, q, v):
-        """How far cubics are off: those through every other instant are at the others, at half the distance an eighth of that or less."""
-        return self._distance(CubicHermiteSpline(t[::2], q[::2], v[::2])(t[1:-1:2]), q[1:-1:2]) / 8
 
     def _extrapolated(self, lab, scene, contender, scheme, dense, every):
         """(t, q, v) by steps of duration/dense/every and half of that, to fourth order; None where a run was lost."""

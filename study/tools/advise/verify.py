@@ -26,7 +26,9 @@ def verify(advice, run):
             return
         run.tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
         row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
-        row |= {"estimate": _at_least(row, advice)}
+        if row["estimate"] is not None and advice.pilot_duration >= duration:  # a larger one at a shorter step: the two runs of it were wrong alike
+            row["estimate"] = max([row["estimate"], *(pilot.estimate for pilot in advice.found[one.setting].pilots
+                                                      if pilot.valid and pilot.step < one.step)])
         advice.verifications.append(row)
         row["refused"] = _refused(one, row, advice)
         if row["refused"]:
@@ -49,14 +51,6 @@ def _affordable(one, question, seconds):
     if share >= 1:
         return question.duration
     return float(f"{share * question.duration:.2g}") if share > 0.05 and share * question.duration > 20 * one.step else 0.0
-
-
-def _at_least(row, advice):
-    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two runs of it were wrong alike."""
-    if row["estimate"] is None or advice.pilot_duration < row["duration"]:
-        return row["estimate"]
-    found = next(found for setting, found in advice.found.items() if setting.name == row["setting"])
-    return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
 def _refused(one, row, advice):
@@ -142,10 +136,8 @@ def _keeps(advice, setting, step, duration, run):
     """Whether a run keeps the error, by half the step, which another one with half of both must show to be right."""
     pilots, error = [], advice.question.error
     for at in (step, step / 2):
-        if run.left() <= 0:
+        if run.left() <= 0 or not all(pilot.valid for pilot in pilots):
             return False
         row = run("shorter", setting, advice.serving(setting)[0], at, duration, max(2.0, run.left()), checks=HALVED)
         pilots.append(Pilot(at, row["status"], row["estimate"]))
-        if not pilots[-1].valid:
-            return False
     return pilots[0] in enough(pilots, error, setting.order)

@@ -50,11 +50,9 @@ def contexts(studyset):
 
 def compared(first, others):
     """Of a set and others those that processors are compared by: `first` with one of its build from each other processor; [] if there is none."""
-    found = {first.facts["context"]["cpu_model"]: first}
-    for one in others:
-        if not unlike(first, one):
-            found.setdefault(one.facts["context"]["cpu_model"], one)
-    return [*found.values()] if len(found) > 1 else []
+    alike = [first, *(one for one in others if not unlike(first, one))]
+    found = gather((one.facts["context"]["cpu_model"], one) for one in alike)
+    return [one for one, *_ in found.values()] if len(found) > 1 else []
 
 
 def questions(studyset):

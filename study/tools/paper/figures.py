@@ -29,7 +29,7 @@ MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")  # of the libraries that lead o
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
-    return {name: fit(draw(known), height, known.context["cpu_model"]) for name, (draw, height) in DRAWN.items()}
+    return {name: fit(draw(known), height) for name, (draw, height) in DRAWN.items()}
 
 
 def own_fill(known):
@@ -171,14 +171,11 @@ def _mechanisms(axes, mine, rows, chosen):
     axes.set_yticks(range(len(mine)), labels, fontsize=7.0)
 
 
-def fit(figure, height=None, machine=""):
-    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`, inches; None: as it is. Titles
-    that name the machine go: the caption says what it is."""
+def fit(figure, height):
+    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`, inches; None: as it is. The title of
+    all of it goes: the caption says what it is."""
     if figure._suptitle:
         figure._suptitle.set_text("")
-    for axes in figure.axes:
-        if machine and machine in axes.get_title(loc="left"):
-            axes.set_title("", loc="left")
     for text in figure.findobj(Text):
         text.set_fontsize(SCALE * text.get_fontsize())
     for line in figure.findobj(plt.Line2D):
