@@ -74,6 +74,24 @@ TEST(Elimination, ColumnsOfABandAreOrderedSoThatLittleFills) {
   EXPECT_TRUE(colamd_order(band(0, 0)).empty());
 }
 
+TEST(Elimination, NestedDissectionOfAGridLeavesLessThanItsRows) {
+  constexpr int kSide = 24;
+  Pairs pairs;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    if (i % kSide + 1 < kSide) pairs.emplace_back(i + 1, i);
+    if (i + kSide < kSide * kSide) pairs.emplace_back(i + kSide, i);
+  }
+  const SymmetricPattern grid(kSide * kSide, pairs);
+  std::vector<int> order = metis_order(grid);
+  const auto found = eliminate(grid, order), natural = eliminate(grid, natural_order(grid));
+  ASSERT_TRUE(found && natural);
+  EXPECT_LT(2 * found->factor_nonzeros, natural->factor_nonzeros);
+  std::ranges::sort(order);
+  EXPECT_EQ(order, natural_order(grid));
+  EXPECT_EQ(metis_order(band(4, 0)), natural_order(band(4, 0)));
+  EXPECT_TRUE(metis_order(band(0, 0)).empty());
+}
+
 TEST(Elimination, ALoopFills) {
   const SymmetricPattern loop(4, {{1, 0}, {2, 1}, {3, 2}, {3, 0}});
   expect_counts(loop, natural_order(loop), 3 + 3 + 2 + 1, 9 + 9 + 4 + 1, 4, 3, 2);

@@ -1,11 +1,14 @@
 // Elimination tree and column counts by walking the row subtrees [Davis, 2006, 4.1 and 4.4].
 #include "describe/elimination.hpp"
 
+#include <metis.h>
+
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <span>
 
@@ -189,6 +192,19 @@ std::vector<int> colamd_order(const SymmetricPattern& pattern) {
   return order;
 }
 
+std::vector<int> metis_order(const SymmetricPattern& pattern) {
+  if (pattern.rows.empty()) return natural_order(pattern);  // METIS wants edges
+  idx_t size = pattern.size();
+  std::vector<idx_t> start(pattern.start.begin(), pattern.start.end());
+  std::vector<idx_t> rows(pattern.rows.begin(), pattern.rows.end());
+  std::vector<idx_t> order(at(size)), place(at(size));
+  if (METIS_NodeND(&size, start.data(), rows.data(), nullptr, nullptr, order.data(),
+                   place.data()) != METIS_OK) {
+    throw std::bad_alloc();
+  }
+  return {order.begin(), order.end()};
+}
+
 std::vector<std::vector<int>> owned_coordinates(const Model& model) {
   std::vector<int> rows_with(at(model.variables()), 0);
   for (const LinearConstraint& linear : model.linear_constraints()) {
@@ -249,12 +265,14 @@ json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& s
   const auto natural = eliminate(tangent, natural_order(tangent));
   const auto amd = eliminate(tangent, order);
   const auto colamd = eliminate(tangent, colamd_order(tangent));
+  const auto metis = eliminate(tangent, metis_order(tangent));
   const auto rows = eliminate(saddle_point, rows_behind(order, saddle_point, owned));
   json result = {{"ordering", "AMD"},
                  {"orderings",
                   {{"natural", elimination_json(natural)},
                    {"AMD", elimination_json(amd)},
                    {"COLAMD", elimination_json(colamd)},
+                   {"METIS", elimination_json(metis)},
                    {"saddle-point", elimination_json(rows)}}}};
   for (const char* key :
        {"factor_nonzeros", "per_column", "flops", "height", "widest", "supernodes"}) {

@@ -61,6 +61,8 @@ std::vector<int> amd_order(const SymmetricPattern& pattern);
 /// The same of the columns for any choice of pivots [Davis, Gilbert, Larimore, Ng, 2004], which
 /// knows nothing of symmetry: that of the product with the transpose.
 std::vector<int> colamd_order(const SymmetricPattern& pattern);
+/// Nested dissection [Karypis, Kumar, 1998]; std::bad_alloc where its memory does not suffice.
+std::vector<int> metis_order(const SymmetricPattern& pattern);
 
 /// By constraint: of a linear one the coordinate with the largest coefficient of those that no
 /// other linear one has, unless that is far below its largest. It is a substitution for that
@@ -77,8 +79,8 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
 
 /// Of the patterns of tangent and saddle-point matrix, and owned_coordinates(). Keys: ordering
 /// ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and
-/// supernodes follow, null if not computed; orderings {"natural", "AMD", "COLAMD", "saddle-point"}: the
-/// same keys each, or null; the last is of the saddle-point matrix.
+/// supernodes follow, null if not computed; orderings {"natural", "AMD", "COLAMD", "METIS",
+/// "saddle-point"}: the same keys each, or null; the last is of the saddle-point matrix.
 nlohmann::json elimination_json(const SymmetricPattern& tangent,
                                 const SymmetricPattern& saddle_point,
                                 const std::vector<std::vector<int>>& owned);
