@@ -149,7 +149,7 @@ class _Rule:
                 if len(times := us[name].dropna()) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
                     features, weights = data.features.loc[times.index], data.weights(times.index)
-                    known = as_penalty(self.models.get(("penalty", name), {})) if dense and scheme == "saddle-point" else {}
+                    known = as_penalty(self.models.get(("penalty", name), {}), dense) if scheme == "saddle-point" else {}
                     self.models[scheme, name] = model(TERMS[scheme, dense], features, times, weights**0.5, known)
         self.candidates = self._compared(data)
 

@@ -9,11 +9,12 @@ PASSES = {"penalty": "passes", "saddle-point": "saddle_passes"}
 OF_A_PASS = {  # by form and whether the implementation's matrices are dense
     ("penalty", False): "1 n jacobian springs tangent factor flops supernodes",
     ("penalty", True): "1 n jacobian springs n*n n*n*n",
-    ("saddle-point", False): "1 n jacobian springs saddle_factor saddle_flops",
+    ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
     ("saddle-point", True): "1 n jacobian n*n n*m m*m m*m*m n*n*m n*m*m stiff*n*m"}
 TERMS = {(form, dense): tuple(f"{PASSES[form]}*{term}" for term in terms.split()) for (form, dense), terms in OF_A_PASS.items()}
-# Springs take dense ones in the saddle-point form what they do in the penalty form, of which far more are measured: their forces, and T₀, which
-# is factorized as T is there. What is solved with its factor costs n m more. That these terms are enough was chosen with a look at families left out.
+# Springs take in the saddle-point form what they do in the penalty form, of which far more are measured: their forces; with dense ones T₀ too,
+# which is factorized as T is there. What is solved with its factor costs n m more. That these terms are enough was chosen with a look at
+# families left out.
 AS_PENALTY = {f"{PASSES['saddle-point']}*{term}": f"{PASSES['penalty']}*{there}"
               for term, there in (("springs", "springs"), ("stiff*n*n", "n*n"), ("stiff*n*n*n", "n*n*n"))}
 ROUNDS = 8  # of weights
@@ -26,9 +27,9 @@ def features_of(term):
 FEATURES = tuple(dict.fromkeys(name for terms in (*TERMS.values(), AS_PENALTY) for term in terms for name in features_of(term)))
 
 
-def as_penalty(found):
-    """{term: µs} of a dense one's saddle-point form, from its model of the penalty form."""
-    return {term: found[there] for term, there in AS_PENALTY.items() if there in found}
+def as_penalty(found, dense):
+    """{term: µs} of the saddle-point form, from an implementation's model of the penalty form."""
+    return {term: found[there] for term, there in AS_PENALTY.items() if there in found and (dense or "stiff" not in term)}
 
 
 def model(terms, features, times, weights, known):

@@ -152,6 +152,13 @@ TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
   EXPECT_FALSE(drowns(1e9, Scheme::penalty));
   EXPECT_TRUE(drowns(1e16, Scheme::penalty));
   EXPECT_FALSE(drowns(1e16, Scheme::saddle_point));
+  const State start = initial_state(scene.model);
+  const auto said = [&](double penalty, Precision precision) {
+    return drowned_forces(scene.model, {.penalty = penalty, .precision = precision}, start);
+  };
+  EXPECT_EQ(said(1e9, Precision::double_precision), "");
+  EXPECT_NE(said(1e9, Precision::single_precision), "");
+  EXPECT_EQ(said(1e3, Precision::single_precision), "");
 }
 
 TEST(ConstraintForce, IsNotDrownedWhereNothingActs) {

@@ -202,6 +202,13 @@ TEST(Judge, ATorsionSpringStaysAcrossItsAxis) {
   Judge judge(scene, lifted(0.0), 0.0);
   EXPECT_EQ(judge.judge(0.1, lifted(0.009)), "");
   EXPECT_TRUE(judge.judge(0.2, lifted(0.011)).starts_with("hinge: its axis is not perpendicular"));
+  ModelData turned = scene.model.data();
+  turned.torsion_springs.clear();
+  turned.couples.push_back({3, 0, 2, 0.5, "drive"});
+  const Scene driven{"couple", Model(std::move(turned)), {}, {}};
+  Judge other(driven, lifted(0.0), 0.0);
+  EXPECT_EQ(other.judge(0.1, lifted(0.009)), "");
+  EXPECT_TRUE(other.judge(0.2, lifted(0.011)).starts_with("drive: its axis is not perpendicular"));
 }
 
 TEST(Judge, ScalesLinearAndBilinearConstraints) {

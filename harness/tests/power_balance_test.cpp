@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "controls/controls.hpp"
 #include "model_math/even_carriage.hpp"
@@ -108,6 +111,32 @@ TEST(EvenCarriage, ConservesEnergyInItsFrame) {
   faster.v[1] *= 1.1;
   judge.judge(0.0, faster);
   EXPECT_GT(*judge.energy_drift_max(), 0.1);
+}
+
+TEST(EvenCarriage, WhereItEndsInARunTheWorkIsJudged) {
+  // Its foot rests, but for a bump between the instants at which that is looked for.
+  nlohmann::json times, values;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = 2e-3 * i, share = std::clamp((t - 0.3) / 0.15, 0.0, 1.0);
+    times.push_back(t);
+    values.push_back(0.05 * std::pow(std::sin(std::numbers::pi * share), 4));
+  }
+  nlohmann::json document = nlohmann::json::parse(R"({"points": [
+      {"name": "A", "position": [0, 0], "driven": {"x": 0}},
+      {"name": "B", "position": [0.6, 0.8]}],
+      "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1, "length": 1}]})");
+  document["points"][0]["driven"]["y"] = {{"table", {{"times", times}, {"values", values}}}};
+  const Scene scene = scene_of(document, "test");
+  ASSERT_TRUE(EvenCarriage::of(scene.model));
+  RunSettings settings;
+  settings.step = chosen(scene.model, {.step = 1e-3, .scheme = Scheme::saddle_point});
+  settings.duration = 1.5;
+  const RunSummary summary = run(scene, test::reference(), settings);
+  EXPECT_FALSE(summary.energy_drift_max);
+  ASSERT_TRUE(summary.imbalance_max) << summary.reason;
+  EXPECT_LT(*summary.imbalance_max, 0.1);
+  settings.duration = 0.2;
+  EXPECT_TRUE(run(scene, test::reference(), settings).energy_drift_max);
 }
 
 TEST(EvenCarriage, TakesBodiesAlongWhosePointsAreDriven) {

@@ -50,7 +50,8 @@ bool same_constraints(const Model& a, const Model& b) {
 bool same_laws(const Model& a, const Model& b) {
   const auto same_law = [](const Law& x, const Law& y) {
     return x.by_position.breaks.size() == y.by_position.breaks.size() &&
-           x.by_rate.breaks.size() == y.by_rate.breaks.size();
+           x.by_rate.breaks.size() == y.by_rate.breaks.size() &&
+           x.factor.is_constant() == y.factor.is_constant();
   };
   return all_alike(a.force_laws(), b.force_laws(),
                    [same_law](const ForceLaw& x, const ForceLaw& y) {

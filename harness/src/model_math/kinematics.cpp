@@ -225,16 +225,18 @@ void add_laws(const Model& model, const Motion& motion, ForceVector& force) {
   for (const TorqueLaw& law : model.torque_laws()) add_about(law, motion, force, of(law.law));
 }
 
+/// |cosine| between an axis and what it turns; planar: 0.
+double tilt_of(int axis, const Vector3& turned, const Motion& motion) {
+  if (axis < 0) return 0.0;
+  const Vector3 z = motion.axis(axis);
+  return std::abs(dot(z, turned)) / (norm(z) * norm(turned));
+}
+
 /// `can_turn_on`: beyond half a turn its torque is as it was.
 template <class Element>
 Torsion torsion(const Element& element, const Motion& motion, bool can_turn_on) {
-  double tilt = 0.0;
-  if (element.axis >= 0) {
-    const Vector3 z = motion.axis(element.axis);
-    for (const Vector3& d : {motion.r(element.a, element.b), motion.r(element.c, element.d)}) {
-      tilt = std::max(tilt, std::abs(dot(z, d)) / (norm(z) * norm(d)));
-    }
-  }
+  const double tilt = std::max(tilt_of(element.axis, motion.r(element.a, element.b), motion),
+                               tilt_of(element.axis, motion.r(element.c, element.d), motion));
   return {element.name, twist(element, motion), tilt, can_turn_on};
 }
 
@@ -330,13 +332,18 @@ void applied_force(const Model& model, double t, Coordinates q, Coordinates v,
 
 std::vector<Torsion> torsions(const Model& model, double t, Coordinates q) {
   std::vector<Torsion> result;
-  if (model.torsion_springs().empty() && model.torque_laws().empty()) return result;
+  const bool has_tilting = model.dimension() == 3 && !model.couples().empty();
+  if (model.torsion_springs().empty() && model.torque_laws().empty() && !has_tilting) return result;
   const Motion motion(model, t, q);
   for (const TorsionSpring& spring : model.torsion_springs()) {
     result.push_back(torsion(spring, motion, spring.stiffness == 0.0));
   }
   for (const TorqueLaw& law : model.torque_laws()) {
     result.push_back(torsion(law, motion, law.law.by_position.is_zero()));
+  }
+  for (const Couple& couple : model.couples()) {  // its twist makes no difference
+    const double tilt = tilt_of(couple.axis, motion.r(couple.a, couple.b), motion);
+    result.push_back({couple.name, 0.0, tilt, true});
   }
   return result;
 }

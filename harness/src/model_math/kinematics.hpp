@@ -40,14 +40,14 @@ void constraint_curvature(const Model& model, double t, std::span<const double> 
 void applied_force(const Model& model, double t, std::span<const double> q,
                    std::span<const double> v, std::span<double> force);
 
-/// Where a torsion spring or torque law is within what Eqs. (11) and (18) mean.
+/// Where a torsion spring, torque law or constant torque is within what Eqs. (11) and (18) mean.
 struct Torsion {
   std::string name = {};
   double twist = 0.0;        ///< s in -pi ... pi
   double tilt = 0.0;         ///< largest |cosine| between its axis and what it turns; planar: 0
   bool can_turn_on = false;  ///< half a turn makes no difference: it depends on the rate alone
 };
-/// One for each torsion spring, then one for each torque law.
+/// One for each torsion spring, then one for each torque law, then one for each constant torque.
 std::vector<Torsion> torsions(const Model& model, double t, std::span<const double> q);
 
 /// M_ii (n), kg.

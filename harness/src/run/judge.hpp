@@ -70,7 +70,7 @@ class Judge {
 
   /// The worst so far and what the next state is judged by, without the rest of the judge.
   struct Figures {
-    std::vector<double> twists;  // of the torsion springs and torque laws, continued; rad
+    std::vector<double> twists;  // as torsions() has them, continued; rad
     EnergyFigures energy;        // of the whole; its scale alone where that does not conserve it
     std::optional<double> position_error;
     double violation = 0.0;           // m^2, m

@@ -53,7 +53,7 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
   if (watch_.is_needed()) next_look_ = looked_after(state_);
-  if (adds_local_errors_ && !judge_.energy_drift_max()) balance_.emplace(scene_);
+  if (adds_local_errors_ && !is_conservative(scene_.model)) balance_.emplace(scene_);
   if (observer_) observer_(0, 0.0, state_);
   if (settings_.half_step) {
     half_.emplace(scene_, access_.create, *settings_.half_step, state_, judge_.length());
@@ -214,6 +214,10 @@ long JudgedRun::looked_after(const State& present) const {
 void JudgedRun::balance_energy(const Sample& sample) {
   const long every = std::clamp(256L / interval_, 1L, 4L);
   const long step = sample.step;
+  if (judge_.energy_drift_max()) {  // as long as it is carried along evenly
+    balanced_ = step;
+    return;
+  }
   if (!balance_ || (judgements_++ % every != every / 2 && step != steps_)) return;
   const auto [excess, work] =
       balance_->over(sample.before, sample.after, time(step), settings_.step.step);
@@ -353,7 +357,7 @@ RunSummary JudgedRun::finish() {
   summary_.position_error_max = judge_.position_error_max();
   summary_.energy_drift_max = judge_.energy_drift_max();
   summary_.imbalance_max = judge_.imbalance_max();
-  if (balance_ && !summary_.imbalance_max) {  // lost before the first look
+  if (balance_ && !summary_.energy_drift_max && !summary_.imbalance_max) {  // lost before a look
     summary_.imbalance_max = std::numeric_limits<double>::infinity();
   }
   summary_.constraint_violation_max = judge_.constraint_violation_max();

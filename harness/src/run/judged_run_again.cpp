@@ -37,7 +37,9 @@ bool JudgedRun::locate_loss(const std::string& reason, long step) {
     simulation.get_state(state);
     const std::string first = judge.judge(time(i), state);
     if (first.empty()) continue;
-    lose(judge, first, i);
+    judge_ = judge;  // its figures are those of the loss
+    has_figures_ = true;
+    lose(judge_, first, i);
     return true;
   }
   judge_ = judge;

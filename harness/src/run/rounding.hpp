@@ -1,6 +1,7 @@
 // What rounding of coordinates does to the constraint forces of the penalty form.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "mbs/model.hpp"
@@ -9,12 +10,13 @@
 namespace mbs {
 
 /// How much of the largest constraint force or load at `state` rounding of the coordinates may make
-/// in the penalty form: alpha |Phi_q|^2 eps max|q| over |Phi_q| |lambda| or |Q|, each the largest.
-/// 0 where nothing acts.
-double rounding_of_penalty_forces(const Model& model, double penalty, const State& state);
+/// in the penalty form: alpha |Phi_q|^2 epsilon max|q| over |Phi_q| |lambda| or |Q|, each the
+/// largest. 0 where nothing acts.
+double rounding_of_penalty_forces(const Model& model, double penalty, const State& state,
+                                  double epsilon = std::numeric_limits<double>::epsilon());
 
-/// Says if that is more than a tenth, and what to do. Empty if not, for schemes without penalty
-/// forces, and for single precision, which is off by more anyway.
+/// Says if that is more than a tenth, in single precision with that of its coordinates, and what to
+/// do. Empty if not, and for schemes without penalty forces.
 std::string drowned_forces(const Model& model, const StepSettings& settings, const State& state);
 
 }  // namespace mbs
