@@ -138,7 +138,11 @@ TEST(Describe, StepTimesAreOfThePassesThatWereCounted) {
     return d["recommendation"][0]["step_us"].get<double>() / d["passes"]["penalty"].get<double>();
   };
   EXPECT_NEAR(one(true), one(false), 1e-9 * one(false));
-  EXPECT_EQ(describe_json(scene, kSettings)["passes"]["penalty"], kUnknownPasses);
+  const auto before = describe_json(scene, kSettings);
+  EXPECT_EQ(before["passes"]["penalty"], kUnknownPasses);
+  EXPECT_NE(describe_text(before).find("(assumed, not counted: penalty, saddle-point)"),
+            std::string::npos);
+  EXPECT_TRUE(recommended(before, scene, kSettings, true)["passes"]["assumed"].empty());
 }
 
 TEST(Describe, Text) {

@@ -200,7 +200,7 @@ def _size(share, contest, rivals):
 
 def _rows(contest, known, verdicts, records):
     """A row for each layer and newcomer that has a place in it. `verdicts`: of the newcomers."""
-    rows = timing.processes(records)
+    rows = timing.processes(timing.counted(records))
     good = rows[rows.status == "ok"]
     wrong = timing.differing(rows) if len(rows) else {}
     if len(good) and set(zip(good.steps, good.start)) != {(contest.steps, contest.start)}:

@@ -160,7 +160,9 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
   add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, smallest, settings);
-  result["passes"] = {{"penalty", kUnknownPasses}, {"saddle-point", kUnknownPasses}};
+  result["passes"] = {{"penalty", kUnknownPasses},
+                      {"saddle-point", kUnknownPasses},
+                      {"assumed", {"penalty", "saddle-point"}}};
   result["features"] = features_json(result);
   return result;
 }

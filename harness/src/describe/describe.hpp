@@ -22,6 +22,7 @@ namespace mbs {
 /// - terms {name: count or true/false};
 /// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
 /// - passes {"penalty", "saddle-point"}: of a step, kUnknownPasses until recommended() counts them;
+///   "assumed": the forms in which they are not counted;
 /// - elimination, see elimination_json(); features {name: number or null}, README.md;
 /// - smallest_eigenvalue (m^2/kg) of Phi_q M^-1 Phi_q^T at the start, of those above 0; infinite
 ///   without constraints, which text has as null;

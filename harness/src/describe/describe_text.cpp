@@ -147,9 +147,15 @@ std::string describe_text(const json& d) {
   const double of_dense = dense_saddle_flops(n, m, d["features"]["stiff"] == 1);
   text += text_line("  saddle-point matrix",
                     elimination_text(orderings["saddle-point"], of_dense, "a dense solver's"));
-  text += text_line("passes a step", fmt::format("about {:.3g}, {:.3g} in the saddle-point form",
-                                                 d["passes"]["penalty"].get<double>(),
-                                                 d["passes"]["saddle-point"].get<double>()));
+  const json& assumed = d["passes"]["assumed"];
+  text += text_line(
+      "passes a step",
+      fmt::format("about {:.3g}, {:.3g} in the saddle-point form{}",
+                  d["passes"]["penalty"].get<double>(), d["passes"]["saddle-point"].get<double>(),
+                  assumed.empty()
+                      ? ""
+                      : fmt::format(" (assumed, not counted: {})",
+                                    fmt::join(assumed.get<std::vector<std::string>>(), ", "))));
   text += text_line("length l", length_text(d));
   text += text_line("penalty factor", penalty_text(d["penalty_window"]));
   for (const json& warning : d["warnings"]) text += text_line("warning", warning);

@@ -10,11 +10,11 @@
 
 namespace mbs {
 
-double count_passes(const Scene& scene, StepSettings settings, const Variant& variant, double flops,
-                    double smallest) {
+std::optional<double> count_passes(const Scene& scene, StepSettings settings,
+                                   const Variant& variant, double flops, double smallest) {
   constexpr double kMostOperations = 1e9, kFewest = 4;  // of all factorizations, about; steps
   const double affordable = kMostOperations / std::max(flops, 1.0);
-  if (affordable < kFewest) return kUnknownPasses;
+  if (affordable < kFewest) return std::nullopt;
   const int wanted =
       static_cast<int>(std::min<double>(affordable, most_steps(scene.model.variables())));
   int steps = 0, passes = 0;
@@ -33,7 +33,8 @@ double count_passes(const Scene& scene, StepSettings settings, const Variant& va
   } catch (const std::exception&) {
     // No factor, drivers too fast for the step, or a lost motion: those who run it are told.
   }
-  return steps > 0 ? static_cast<double>(passes) / steps : kUnknownPasses;
+  if (steps == 0) return std::nullopt;
+  return static_cast<double>(passes) / steps;
 }
 
 }  // namespace mbs

@@ -192,8 +192,12 @@ json recommended(json description, const Scene& scene, StepSettings settings, bo
       const json& order = description["elimination"]["orderings"]
                                      [scheme == Scheme::penalty ? "AMD" : "saddle-point"];
       if (order.is_null()) continue;
-      description["passes"][name_of(scheme)] = count_passes(
-          scene, of(scheme), *by.variant, order["flops"], description["smallest_eigenvalue"]);
+      const auto passes = count_passes(scene, of(scheme), *by.variant, order["flops"],
+                                       description["smallest_eigenvalue"]);
+      if (!passes) continue;
+      description["passes"][name_of(scheme)] = *passes;
+      json& assumed = description["passes"]["assumed"];
+      assumed.erase(std::find(assumed.begin(), assumed.end(), json(name_of(scheme))));
     }
     description["features"] = features_json(description);
     found = recommendation_json(rule, description, why_not);

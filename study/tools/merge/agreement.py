@@ -56,8 +56,8 @@ def compared(first, others):
 
 
 def questions(studyset):
-    """{Question: Ranking} of one set's map and mechanisms."""
-    return dict([*_map(studyset), *_families(studyset)])
+    """{Question: Ranking} of one set's map and mechanisms; what both ask is one question, of the mechanisms."""
+    return dict({one[1:4]: (one, ranking) for one, ranking in (*_map(studyset), *_families(studyset))}.values())
 
 
 def _map(studyset):
