@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "filled_graph.hpp"
+#include "minimum_degree.hpp"
+#include "precedence.hpp"
 #include "shallow_order.hpp"
 
 namespace mbs::csc_klu {
@@ -36,40 +39,58 @@ Pattern tangent_pattern(const Pattern& saddle, int n) {
   return Pattern(n, std::move(positions));
 }
 
-}  // namespace
-
-std::vector<int> interleaved_order(const Pattern& saddle, int n, const std::vector<Owned>& owned) {
-  const std::vector<int> coordinates = shallow_order(tangent_pattern(saddle, n));
-  std::vector<int> rank(n);
-  for (int k = 0; k < n; ++k) rank[coordinates[k]] = k;
-
-  // Multipliers that follow the coordinate of a rank; those without coordinates follow the first.
-  std::vector<std::vector<int>> followers(n);
-  std::vector<int> last_of, owner(n, -1);  // by row: the last of its coordinates
+/// What multipliers have to wait for; coordinates wait for nothing.
+Precedence precedence_of_rows(const Pattern& saddle, int n, const std::vector<Owned>& owned) {
+  Precedence precedence(saddle.columns());
+  std::vector<int> owner(n, -1);  // by coordinate: a multiplier
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
-    const int row = static_cast<int>(last_of.size());
-    std::fill_n(owner.begin() + owned[row].first, owned[row].count, row);
-    last_of.push_back(0);
-    for (const int i : Coordinates(saddle, n, multiplier)) {
-      last_of[row] = std::max(last_of[row], rank[i]);
-    }
+    const auto [first, count] = owned[multiplier - n];
+    std::fill_n(owner.begin() + first, count, multiplier);
   }
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
     const auto [first, count] = owned[multiplier - n];
-    int last = last_of[multiplier - n];
+    for (int i = first; i < first + count; ++i) precedence.add(i, multiplier);
+    if (count > 0) continue;
     for (const int i : Coordinates(saddle, n, multiplier)) {
-      if (owner[i] >= 0) last = std::max(last, last_of[owner[i]]);
+      precedence.add(i, multiplier);
+      if (owner[i] < 0) continue;
+      for (const int other : Coordinates(saddle, n, owner[i])) precedence.add(other, multiplier);
     }
-    if (count > 0) last = *std::max_element(rank.begin() + first, rank.begin() + first + count);
-    followers[last].push_back(multiplier);
   }
+  return precedence;
+}
+
+/// T's order for the coordinates, every multiplier as soon as it may come.
+std::vector<int> interleaved_order(const Pattern& saddle, int n, Precedence precedence) {
   std::vector<int> order;
-  order.reserve(saddle.columns());
-  for (int k = 0; k < n; ++k) {
-    order.push_back(coordinates[k]);
-    order.insert(order.end(), followers[k].begin(), followers[k].end());
+  const auto append = [&](int multiplier) { order.push_back(multiplier); };
+  for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
+    if (precedence.is_free(multiplier)) append(multiplier);
+  }
+  for (const int i : shallow_order(tangent_pattern(saddle, n))) {
+    order.push_back(i);
+    precedence.take_out(i, append);
   }
   return order;
+}
+
+/// Multiplications of a factorization and three solutions.
+long long work(const Pattern& saddle, const std::vector<int>& order) {
+  long long sum = 0;
+  for (const std::vector<int>& column : FilledGraph(saddle, order).later) {
+    const long long length = std::ssize(column);
+    sum += length * length + 3 * 2 * length;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<int> saddle_order(const Pattern& saddle, int n, const std::vector<Owned>& owned) {
+  const Precedence precedence = precedence_of_rows(saddle, n, owned);
+  std::vector<int> interleaved = interleaved_order(saddle, n, precedence);
+  std::vector<int> by_degree = minimum_degree_order(saddle, precedence);
+  return work(saddle, by_degree) < work(saddle, interleaved) ? by_degree : interleaved;
 }
 
 }  // namespace mbs::csc_klu

@@ -12,15 +12,18 @@ struct Owned {
   int first = 0, count = 0;
 };
 
-/// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers: that of T
-/// for the coordinates, every multiplier right after the last of its coordinates. So it never is
-/// -eps alone that becomes a pivot, by which 1/eps Phi_q^T Phi_q would come into T_0 as it does in
-/// the penalty form, but -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
+/// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers, in which
+/// every multiplier comes after all of its coordinates. So it never is -eps alone that becomes a
+/// pivot, by which 1/eps Phi_q^T Phi_q would come into T_0 as it does in the penalty form, but
+/// -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
 ///
 /// Example, one coordinate x and one multiplier: x, then the multiplier.
-/// But a row may own some of its coordinates, and comes right after these. To a row that has an
+/// But a row may own some of its coordinates, and waits for these only. To a row that has an
 /// owned coordinate, those of its owner count as its own.
-[[nodiscard]] std::vector<int> interleaved_order(const Pattern& saddle, int n,
-                                                 const std::vector<Owned>& owned);
+///
+/// Of two such orders, the one that leaves less work: T's for the coordinates, with each multiplier
+/// as soon as it may come; and minimum degree on the graph of coordinates and multipliers.
+[[nodiscard]] std::vector<int> saddle_order(const Pattern& saddle, int n,
+                                            const std::vector<Owned>& owned);
 
 }  // namespace mbs::csc_klu

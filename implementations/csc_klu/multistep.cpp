@@ -34,8 +34,8 @@ class MultistepSimulation final : public Simulation {
   };
 
   void do_set_state(const State& state) override {
-    rattle_.equations().set_state(state);
-    rattle_.start();
+    rattle_.restart(state);
+    if (observer_) observer_->rattle.system().start_again();
     started_ = 0;
     is_under_way_ = false;
   }

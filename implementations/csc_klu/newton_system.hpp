@@ -14,6 +14,7 @@ namespace mbs::csc_klu {
 ///   if (system.factorize()) system.solve();  // right() becomes the solution, Delta q the first n
 ///   system.take_multipliers();            // lambda by the solution, in saddle-point form
 ///   system.update_multipliers();          // lambda by Phi at the new q', in penalty form
+///   system.start_again();                 // pivots as they were at first
 ///
 /// For projections right() takes n numbers first; include_constraints(z) completes them by
 /// -dt^2/4 alpha Phi_q^T z, Eqs. (6) and (15), or by -z, Eq. (13); z has m numbers.
@@ -28,6 +29,8 @@ concept NewtonSystem = requires(System system, std::span<const double> z) {
   system.solve();
   system.take_multipliers();
   system.update_multipliers();
+  { System::kMultipliersNeedPhi } -> std::convertible_to<bool>;  // update_multipliers() needs it
+  system.start_again();
   system.include_constraints(z);
   system.include_geometric_stiffness(z.data());
   system.reset_reactions();

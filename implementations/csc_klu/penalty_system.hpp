@@ -15,6 +15,8 @@ namespace mbs::csc_klu {
 template <int dim, TangentSolver Solver>
 class PenaltySystem {
  public:
+  static constexpr bool kMultipliersNeedPhi = true;
+
   PenaltySystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
       : penalty_(settings.penalty),
         equations_(equations),
@@ -36,6 +38,7 @@ class PenaltySystem {
     }
     return tangent_.values();
   }
+  void start_again() { solver_.start_again(); }
   [[nodiscard]] bool factorize() { return solver_.factorize(tangent_.values()); }
 
   void evaluate_residual() { equations_.evaluate_residual(penalty_, right_.data()); }

@@ -15,10 +15,7 @@ class RattleSimulation final : public Simulation {
   }
 
  private:
-  void do_set_state(const State& state) override {
-    rattle_.equations().set_state(state);
-    rattle_.start();
-  }
+  void do_set_state(const State& state) override { rattle_.restart(state); }
   void do_get_state(State& state) const override { rattle_.equations().get_state(state); }
   StepOutcome do_step() override { return rattle_.advance(); }
 

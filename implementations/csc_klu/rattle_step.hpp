@@ -34,6 +34,12 @@ class RattleStep {
   [[nodiscard]] const Equations<dim>& equations() const { return equations_; }
   [[nodiscard]] SaddleSystem<dim, Solver>& system() { return system_; }
 
+  /// Takes over a state, then start(); nothing of the motion before has an influence.
+  bool restart(const State& state) {
+    equations_.set_state(state);
+    system_.start_again();
+    return start();
+  }
   /// Factorizes R(q) and makes a and lambda consistent; false if the factorization failed.
   bool start() { return settle(false); }
   /// The same for v, too, if it is to be refined.

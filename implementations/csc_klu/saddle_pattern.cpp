@@ -105,7 +105,7 @@ SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>
                                   const std::vector<ElementBlock>& elements,
                                   const std::vector<HessianEntry>& hessians)
     : pattern(saddle_pattern(model, jacobian, elements, hessians)),
-      order(interleaved_order(pattern, model.variables(), owned_coordinates(model, jacobian))),
+      order(saddle_order(pattern, model.variables(), owned_coordinates(model, jacobian))),
       shares(elements, pattern, [](int, int) { return false; }) {
   const int n = model.variables();
   visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {

@@ -16,6 +16,8 @@ namespace mbs::csc_klu {
 template <int dim, TangentSolver Solver>
 class SaddleSystem {
  public:
+  static constexpr bool kMultipliersNeedPhi = false;
+
   SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
       : SaddleSystem(model, settings, equations, element_blocks(equations.force_pattern, dim)) {}
 
@@ -46,6 +48,7 @@ class SaddleSystem {
     }
     return matrix_.values();
   }
+  void start_again() { solver_.start_again(); }
   [[nodiscard]] bool factorize() { return solver_.factorize(matrix_.values()); }
 
   void evaluate_residual() {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "filled_graph.hpp"
 #include "mbs/simulation.hpp"
 
 namespace mbs::csc_klu {
@@ -20,31 +21,6 @@ std::vector<int> amd(const Pattern& pattern) {
   }
   return order;
 }
-
-/// The graph of L + L^T in a given order; vertices are places in that order.
-struct FilledGraph {
-  FilledGraph(const Pattern& pattern, const std::vector<int>& order)
-      : earlier(order.size()), later(order.size()) {
-    const int n = pattern.columns();
-    std::vector<int> place(n), last_seen(n, -1);
-    std::vector<std::vector<int>> children(n);  // in the elimination tree
-    for (int k = 0; k < n; ++k) place[order[k]] = k;
-    for (int k = 0; k < n; ++k) {
-      const auto include = [&](int other) {
-        if (other <= k || last_seen[other] == k) return;
-        last_seen[other] = k;
-        later[k].push_back(other);
-        earlier[other].push_back(k);
-      };
-      const int end = pattern.column_begin[order[k] + 1];
-      for (int i = pattern.column_begin[order[k]]; i < end; ++i) include(place[pattern.row[i]]);
-      for (const int child : children[k]) std::ranges::for_each(later[child], include);
-      if (!later[k].empty()) children[*std::ranges::min_element(later[k])].push_back(k);
-    }
-  }
-
-  std::vector<std::vector<int>> earlier, later;  ///< neighbours; the earlier ones ascending
-};
 
 /// What is left of a filled graph while vertices that cause no fill are taken out.
 class Remainder {

@@ -34,7 +34,10 @@ class NewtonSimulation final : public Simulation {
                 {Structure::Kind::definite, tangent_pattern_.order}) {}
 
  private:
-  void do_set_state(const State& state) override { equations_.set_state(state); }
+  void do_set_state(const State& state) override {
+    equations_.set_state(state);
+    solver_.start_again();
+  }
   void do_get_state(State& state) const override { equations_.get_state(state); }
 
   StepOutcome do_step() override {

@@ -29,6 +29,7 @@ GuardedRefactorization::GuardedRefactorization(const Pattern& pattern,
                                                const Structure& structure, Guard guard)
     : pattern_(pattern),
       bound_(guard.backward_error),
+      first_(values.begin(), values.end()),
       factors_(pattern, guard.pivot_tolerance, structure),
       values_(values),
       right_(pattern.columns()),
@@ -51,9 +52,16 @@ void GuardedRefactorization::solve(std::span<double> x) {
   factors_.solve(x);
 }
 
+void GuardedRefactorization::start_again() {
+  if (has_first_pivots_) return;
+  (void)factors_.factor(first_);
+  has_first_pivots_ = true;
+}
+
 bool GuardedRefactorization::repivot() {
   ++repivotings_;
   fresh_ = true;
+  has_first_pivots_ = false;
   return factors_.factor(values_);
 }
 

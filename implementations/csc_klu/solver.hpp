@@ -16,13 +16,15 @@ namespace mbs::csc_klu {
 /// matrix. factorize() takes new values, which have to stay until the last solve() with them; false
 /// if the matrix is singular, not finite or, unless it is said to be indefinite, not positive
 /// definite (another call may succeed). solve() replaces a right-hand side (of all columns) by the
-/// solution with the factors of the last success.
+/// solution with the factors of the last success. start_again() forgets all values but the first:
+/// what follows is as in a new solver, and solve() waits for factorize().
 template <class Solver>
 concept TangentSolver = std::constructible_from < Solver,
         const Pattern&, std::span<const double>,
 const Structure& > &&requires(Solver solver, std::span<const double> values, std::span<double> x) {
   { solver.factorize(values) } -> std::same_as<bool>;
   solver.solve(x);
+  solver.start_again();
 };
 
 /// Pivots on the diagonal, unless one is zero; see LuFactors for the rule.
@@ -38,6 +40,7 @@ class Refactorization {
                   const Structure& structure = {}, double pivot_tolerance = kDiagonalPivots);
   [[nodiscard]] bool factorize(std::span<const double> values);
   void solve(std::span<double> x) { factors_.solve(x); }
+  void start_again() {}
 
  private:
   LuFactors factors_;
@@ -58,6 +61,7 @@ class Factorization {
                 const Structure& structure = {}, double pivot_tolerance = kPivotTolerance);
   [[nodiscard]] bool factorize(std::span<const double> values) { return factors_.factor(values); }
   void solve(std::span<double> x) { factors_.solve(x); }
+  void start_again() {}
 
  private:
   LuFactors factors_;
@@ -83,6 +87,7 @@ class GuardedRefactorization {
                          const Structure& structure = {}, Guard guard = {});
   [[nodiscard]] bool factorize(std::span<const double> values);
   void solve(std::span<double> x);
+  void start_again();
 
   /// How often the guard gave up pivots, each time an allocation by KLU.
   [[nodiscard]] int repivotings() const { return repivotings_; }
@@ -95,12 +100,14 @@ class GuardedRefactorization {
   [[nodiscard]] bool is_accurate(std::span<const double> x);
 
   const Pattern& pattern_;
-  const double bound_;  ///< Guard::backward_error
+  const double bound_;               ///< Guard::backward_error
+  const std::vector<double> first_;  ///< values
   LuFactors factors_;
   std::span<const double> values_;  ///< of the matrix that is factorized
   std::vector<double> right_;       ///< n; the right-hand side, as the solution overwrites it
   std::vector<double> residual_;    ///< n
   bool fresh_ = false;              ///< the pivots were chosen for this very matrix
+  bool has_first_pivots_ = true;
   int repivotings_ = 0;
 };
 

@@ -28,6 +28,7 @@ class TrapezoidalSimulation final : public Simulation {
  private:
   void do_set_state(const State& state) override {
     equations_.set_state(state);
+    system_.start_again();
     is_due_ = true;
     unprojected_ = 0;
   }
@@ -57,7 +58,7 @@ class TrapezoidalSimulation final : public Simulation {
   bool iterate(bool projects, StepOutcome& outcome) {
     Equations<dim>& e = equations_;
     double before = 0.0;
-    bool goes_on = true;
+    bool goes_on = true, is_slow = false;
     while (goes_on) {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
@@ -66,29 +67,41 @@ class TrapezoidalSimulation final : public Simulation {
       phases_.enter(Phase::solve);
       system_.solve();
       phases_.enter(Phase::other);
-      std::copy_n(system_.right().begin(), e.n, correction_.begin());
-      const double size = largest(e.n, correction_.data());
-      const bool is_within = correct(e.n, settings_.step, settings_.tolerance, correction_.data(),
-                                     e.v.data(), e.a.data());
-      const bool is_slow = outcome.passes > 1 && !is_within && !(size <= before / 4.0);
-      before = size;
+      double* const correction = system_.right().data();
+      const bool is_within =
+          correct(e.n, settings_.step, settings_.tolerance, correction, e.v.data(), e.a.data());
+      if (settings_.tangent == TangentReuse::kept) {
+        const double size = largest(e.n, correction);
+        is_slow = outcome.passes > 1 && !is_within && !(size <= before / 4.0);
+        before = size;
+      }
       if (has_converged(is_within)) outcome.status = StepStatus::converged;
       goes_on = outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes;
       system_.take_multipliers();
-      if (!goes_on && projects && !is_refined()) project();
-      for (int i = 0; i < e.n; ++i) e.q[i] += correction_[i];
-      phases_.enter(Phase::evaluation);
-      if (goes_on || is_refined()) {
-        e.evaluate_constraints();
+      if (!goes_on && projects && !is_refined()) {
+        std::copy_n(correction, e.n, correction_.begin());  // projections need right()
+        project();
+        add(correction_.data());
       } else {
+        add(correction);
+      }
+      phases_.enter(Phase::evaluation);
+      if (goes_on || (projects && is_refined())) {
+        e.evaluate_constraints();
+      } else if (System::kMultipliersNeedPhi) {
         e.evaluate_phi();
       }
       phases_.enter(Phase::other);
       update_multipliers(is_within);
       if (settings_.tangent == TangentReuse::none) is_due_ = true;
-      if (settings_.tangent == TangentReuse::kept && is_slow) is_due_ = true;
+      if (is_slow) is_due_ = true;
     }
     return true;
+  }
+
+  void add(const double* correction) {
+    Equations<dim>& e = equations_;
+    for (int i = 0; i < e.n; ++i) e.q[i] += correction[i];
   }
 
   /// After a pass: whether the step has.
@@ -157,7 +170,7 @@ class TrapezoidalSimulation final : public Simulation {
   const StepSettings settings_;
   Equations<dim> equations_;
   System system_;
-  std::vector<double> correction_;  ///< n; Delta q
+  std::vector<double> correction_;  ///< n; Delta q during projections
   Projection<dim, System> projection_;
   bool is_due_ = true;       ///< the next pass factorizes
   bool is_updated_ = false;  ///< the pass before updated lambda
