@@ -1,4 +1,4 @@
-// Another order with the same fill, in which chains of unknowns are eliminated side by side.
+// Orders of elimination with little fill and low trees.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,16 @@
 
 namespace mbs::csc_cholmod {
 
-/// The pattern of a factor L is `filled`, diagonal left out: an order without further fill that
-/// starts at all ends of the structure and goes towards its middle, ends taking turns. Unknown i
-/// becomes `result[i]`.
+/// What is eliminated before node v: `before[v]`, each once.
+using Before = std::vector<std::vector<int>>;
+
+/// The order of n nodes that costs least, linked at `positions`: out of `order`, which keeps
+/// `before`, and minimum degree in rounds. A round eliminates nodes that no edge links. Either gets
+/// the lowest elimination tree that its fill allows. Where much fills `order` stays. Node v becomes
+/// `result[v]`.
 ///
 /// Example, the chain 0-1-2-3-4: result = {0, 2, 4, 3, 1} or the like, 0 and 4 first, 2 last.
-std::vector<int> outside_in_order(int n, const std::vector<Position>& filled);
+std::vector<int> low_order(int n, const std::vector<Position>& positions,
+                           const std::vector<int>& order, const Before& before);
 
 }  // namespace mbs::csc_cholmod

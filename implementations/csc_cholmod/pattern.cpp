@@ -37,14 +37,18 @@ HalfPattern::HalfPattern(Half half, int n, const std::vector<Position>& position
 }
 
 HalfPattern HalfPattern::renumbered(Half half, const std::vector<int>& number) const {
-  std::vector<Position> positions;
-  positions.reserve(row_.size());
+  std::vector<Position> result = positions();
+  for (Position& p : result) p = {number[p.row], number[p.column]};
+  return HalfPattern(half, size(), result);
+}
+
+std::vector<Position> HalfPattern::positions() const {
+  std::vector<Position> result;
+  result.reserve(row_.size());
   for (int j = 0; j < size(); ++j) {
-    for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
-      positions.push_back({number[row_[p]], number[j]});
-    }
+    for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) result.push_back({row_[p], j});
   }
-  return HalfPattern(half, size(), positions);
+  return result;
 }
 
 int HalfPattern::index(Position position) const {

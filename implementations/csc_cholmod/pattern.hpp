@@ -35,6 +35,9 @@ class HalfPattern {
   [[nodiscard]] const std::vector<int>& column_start() const { return column_start_; }
   [[nodiscard]] const std::vector<int>& row() const { return row_; }
 
+  /// All of them, each once.
+  [[nodiscard]] std::vector<Position> positions() const;
+
   /// Index of an existing position in the arrays of values. A search: for set-up only.
   [[nodiscard]] int index(Position position) const;
 

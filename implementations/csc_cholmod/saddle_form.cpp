@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "saddle_schedule.hpp"
@@ -10,13 +11,33 @@
 
 namespace mbs::csc_cholmod {
 
+namespace {
+
+/// Unknown i of the model is the result[i]-th unknown in the order of elimination.
+std::vector<int> ranks(const std::vector<int>& place, int unknowns) {
+  std::vector<int> order(unknowns), result(unknowns);
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](int i) { return place[i]; });
+  for (int k = 0; k < unknowns; ++k) result[order[k]] = k;
+  return result;
+}
+
+/// Places of the unknowns in the order of elimination, then of the rows.
+std::vector<int> by_rank(std::vector<int> place, int unknowns) {
+  std::sort(place.begin(), place.begin() + unknowns);
+  return place;
+}
+
+}  // namespace
+
 SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method method)
-    : SaddleForm(model, settings, method, fill_reducing_order(tangent_pattern(model), method)) {}
+    : SaddleForm(model, settings, method, saddle_places(model, method)) {}
 
 SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method method,
-                       std::vector<int> number)
-    : Assembly(model, settings, std::move(number), preferred_half(method.factorization)),
-      place_(saddle_places(model, coordinates_, lowered_)),
+                       std::vector<int> place)
+    : Assembly(model, settings, ranks(place, model.variables()),
+               preferred_half(method.factorization)),
+      place_(by_rank(std::move(place), model.variables())),
       pattern_(saddle_pattern(model, coordinates_, lowered_, lowered_forces_, place_,
                               preferred_half(method.factorization))),
       schedule_(saddle_contributions(lowered_, lowered_forces_, place_, pattern_)),

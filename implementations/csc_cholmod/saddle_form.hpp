@@ -36,7 +36,7 @@ class SaddleForm : public Assembly {
 
  private:
   SaddleForm(const Model& model, const StepSettings& settings, Method method,
-             std::vector<int> number);
+             std::vector<int> place);
 
   std::vector<int> place_;        ///< n + rows: place in the order of elimination
   HalfPattern pattern_;           ///< in that order

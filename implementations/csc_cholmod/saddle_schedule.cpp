@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <utility>
 
+#include "elimination_order.hpp"
 #include "schedule.hpp"
 
 namespace mbs::csc_cholmod {
@@ -84,34 +87,63 @@ std::vector<int> owners(const Model& model, const Coordinates& coordinates,
   return owner;
 }
 
+/// Of the unknowns, then of the rows: which unknowns come before.
+Before unknowns_before(const Model& model, const Coordinates& coordinates,
+                       const LoweredConstraints& lowered) {
+  const int unknowns = coordinates.unknowns();
+  const std::vector<int> owner = owners(model, coordinates, lowered);
+  std::vector<std::vector<int>> columns(lowered.rows());
+  for_jacobian(lowered, [&](int row, int column) { columns[row].push_back(column); });
+  Before owned(lowered.rows());
+  for (int column = 0; column < unknowns; ++column) {
+    if (owner[column] >= 0) owned[owner[column]].push_back(column);
+  }
+  Before result(unknowns);
+  for (int row = 0; row < lowered.rows(); ++row) {
+    std::vector<int> needed = owned[row];
+    if (needed.empty()) {
+      needed = columns[row];
+      for (int column : columns[row]) {
+        if (owner[column] < 0) continue;
+        const std::vector<int>& more = columns[owner[column]];
+        needed.insert(needed.end(), more.begin(), more.end());
+      }
+    }
+    std::ranges::sort(needed);
+    const auto rest = std::ranges::unique(needed);
+    needed.erase(rest.begin(), rest.end());
+    result.push_back(std::move(needed));
+  }
+  return result;
+}
+
 }  // namespace
 
-std::vector<int> saddle_places(const Model& model, const Coordinates& coordinates,
-                               const LoweredConstraints& lowered) {
+std::vector<int> saddle_places(const Model& model, Method method) {
+  const Coordinates coordinates(model, fill_reducing_order(tangent_pattern(model), method));
+  const LoweredConstraints lowered(model, coordinates);
   const int unknowns = coordinates.unknowns();
-  std::vector<int> all(lowered.rows());  // unknowns up to the last of each row
-  for_jacobian(lowered, [&](int row, int column) { all[row] = std::max(all[row], column + 1); });
-  const std::vector<int> owner = owners(model, coordinates, lowered);
-  std::vector<int> after = all;  // unknowns before each row
-  for_jacobian(lowered, [&](int row, int column) {
-    if (owner[column] >= 0) after[row] = std::max(after[row], all[owner[column]]);
-  });
-  for (const int row : owner) {
-    if (row >= 0) after[row] = 0;
+  const Before before = unknowns_before(model, coordinates, lowered);
+  const int n = static_cast<int>(before.size());
+  std::vector<int> last(n), order(n);
+  std::iota(last.begin(), last.end(), 0);
+  std::iota(order.begin(), order.end(), 0);
+  for (int k = unknowns; k < n; ++k) {
+    last[k] = before[k].empty() ? -1 : std::ranges::max(before[k]);
   }
-  for (int column = 0; column < unknowns; ++column) {
-    if (owner[column] >= 0) after[owner[column]] = column + 1;
+  std::ranges::stable_sort(order, {}, [&](int k) { return last[k]; });
+  std::vector<int> place(n), result(n);
+  for (int k = 0; k < n; ++k) place[order[k]] = k;
+  if (method.tuning == Tuning::own) {
+    std::vector<int> same(n);
+    std::iota(same.begin(), same.end(), 0);
+    const HalfPattern pattern = saddle_pattern(
+        model, coordinates, lowered, LoweredForces(model, coordinates), same, Half::lower);
+    place = low_order(n, pattern.positions(), order, before);
   }
-  std::vector<int> next(unknowns + 1);  // place of the first row after so many unknowns
-  for (int count : after) {
-    if (count < unknowns) ++next[count + 1];
-  }
-  for (int i = 0; i < unknowns; ++i) next[i + 1] += next[i] + 1;
-  std::vector<int> place;
-  place.reserve(unknowns + lowered.rows());
-  for (int i = 0; i < unknowns; ++i) place.push_back(next[i + 1] - 1);
-  for (int count : after) place.push_back(next[count]++);
-  return place;
+  for (int i = 0; i < unknowns; ++i) result[i] = place[coordinates.number()[i]];
+  std::copy(place.begin() + unknowns, place.end(), result.begin() + unknowns);
+  return result;
 }
 
 HalfPattern saddle_pattern(const Model& model, const Coordinates& coordinates,

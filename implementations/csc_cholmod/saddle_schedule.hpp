@@ -10,18 +10,18 @@
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
 #include "pattern.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_cholmod {
 
-/// Places of the unknowns, then of the rows, in the order of elimination: unknowns in their own
-/// order, each row right after the last unknown that it has an entry for. No pivot of a row then is
-/// epsilon alone, unless it depends on rows before it: rounding does not grow with alpha.
+/// Places of the model's unknowns, then of the rows, in the order of elimination. A row comes after
+/// all unknowns that it has an entry for. No pivot of a row then is epsilon alone, unless it
+/// depends on rows before it: rounding does not grow with alpha. (But a row that owns unknowns, see
+/// README.md, may come once these are eliminated.)
 ///
-/// Example, three unknowns, row 0 with entries for 0 and 1, row 1 for 1 and 2: the order is unknown
-/// 0, unknown 1, row 0, unknown 2, row 1, and the places are {0, 1, 3, 2, 4}. (But a row that owns
-/// unknowns, see README.md, comes right after the last of these.)
-std::vector<int> saddle_places(const Model& model, const Coordinates& coordinates,
-                               const LoweredConstraints& lowered);
+/// Example, three unknowns, row 0 with entries for 0 and 1, row 1 for 1 and 2: in the order unknown
+/// 0, unknown 1, row 0, unknown 2, row 1 the places are {0, 1, 3, 2, 4}.
+std::vector<int> saddle_places(const Model& model, Method method);
 
 /// Positions of the matrix, in that order.
 HalfPattern saddle_pattern(const Model& model, const Coordinates& coordinates,

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -121,24 +121,6 @@ Factor analyze(cholmod_sparse& matrix, Common& common) {
   throw Unsupported("CHOLMOD cannot analyse this matrix, status " + std::to_string(common.status));
 }
 
-std::vector<double> identity_values(const HalfPattern& pattern) {
-  std::vector<double> values(pattern.nonzeros());
-  for (int j = 0; j < pattern.size(); ++j) values[pattern.index({j, j})] = 1.0;
-  return values;
-}
-
-/// Positions of L below its diagonal; `factor` is a simplicial one.
-std::vector<Position> below_diagonal(const cholmod_factor& factor) {
-  const int* start = static_cast<const int*>(factor.p);
-  const int* count = static_cast<const int*>(factor.nz);
-  const int* row = static_cast<const int*>(factor.i);
-  std::vector<Position> result;
-  for (int j = 0; j < static_cast<int>(factor.n); ++j) {
-    for (int k = 1; k < count[j]; ++k) result.push_back({row[start[j] + k], j});
-  }
-  return result;
-}
-
 /// What a supernodal factorization should take, us.
 double expected_time(const cholmod_factor& factor) {
   const int* column = static_cast<const int*>(factor.super);
@@ -186,19 +168,15 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method) 
   Common common;
   common.supernodal = CHOLMOD_SIMPLICIAL;
   common.method[0].ordering = ordering;
-  const std::vector<double> identity = identity_values(pattern);
-  cholmod_sparse matrix = view(pattern, identity.data());
+  cholmod_sparse matrix = view(pattern, nullptr);
   const Factor factor = analyze(matrix, common);
-  std::vector<int> place(pattern.size());  // of what comes k-th in CHOLMOD's order
-  std::iota(place.begin(), place.end(), 0);
-  if (!supernodal && method.tuning == Tuning::own) {
-    // The pattern of L comes with its values.
-    if (!cholmod_factorize(&matrix, factor.get(), &common)) throw Unsupported(kNoMemory);
-    place = outside_in_order(pattern.size(), below_diagonal(*factor));
-  }
-  std::vector<int> number(pattern.size());
+  const int n = pattern.size();
   const int* old = static_cast<const int*>(factor->Perm);
-  for (int k = 0; k < pattern.size(); ++k) number[old[k]] = place[k];
+  if (!supernodal && method.tuning == Tuning::own) {
+    return low_order(n, pattern.positions(), {old, old + n}, Before(n));
+  }
+  std::vector<int> number(n);
+  for (int k = 0; k < n; ++k) number[old[k]] = k;
   return number;
 }
 
@@ -244,6 +222,7 @@ struct Solver::Cholmod {
     if (!factor->is_super) {
       const int* start = static_cast<const int*>(factor->p);
       diagonal.assign(start, start + factor->n);
+      inverse.resize(factor->n);
       return;
     }
     const int* first_column = static_cast<const int*>(factor->super);
@@ -263,12 +242,67 @@ struct Solver::Cholmod {
     std::erase(diagonal, -1);
   }
 
+  /// 1/D of LDL', which all solves with this factorization then multiply by.
+  void invert_diagonal() {
+    const double* x = static_cast<const double*>(factor->x);
+    const int* start = static_cast<const int*>(factor->p);
+    for (std::size_t j = 0; j < inverse.size(); ++j) inverse[j] = 1.0 / x[start[j]];
+  }
+
+  /// LDL': x = L' \ (D \ (L \ x)). A column of L has its diagonal, which is D's, first. Two
+  /// columns with the same rows below both are taken together.
+  void solve_in_place(double* x) const {
+    const int n = static_cast<int>(factor->n);
+    const int* start = static_cast<const int*>(factor->p);
+    const int* count = static_cast<const int*>(factor->nz);
+    const int* row = static_cast<const int*>(factor->i);
+    const double* l = static_cast<const double*>(factor->x);
+    const double* inverse_d = inverse.data();
+    const auto is_pair = [&](int j) {  // j and j + 1
+      return count[j] == count[j + 1] + 1 && row[start[j] + 1] == j + 1;
+    };
+    for (int j = 0; j < n; ++j) {
+      const int* below = row + start[j] + 1;
+      const double* first = l + start[j] + 1;
+      const double x_j = x[j];
+      if (j + 1 < n && is_pair(j)) {
+        ++j;
+        const double* second = l + start[j] + 1;
+        const double x_next = x[j] -= *first++ * x_j;
+        ++below;
+        for (int p = 0; p < count[j] - 1; ++p) x[below[p]] -= first[p] * x_j + second[p] * x_next;
+      } else {
+        for (int p = 0; p < count[j] - 1; ++p) x[below[p]] -= first[p] * x_j;
+      }
+    }
+    for (int j = n - 1; j >= 0; --j) {
+      const int* below = row + start[j] + 1;
+      const double* second = l + start[j] + 1;
+      double sum = x[j] * inverse_d[j];
+      if (j > 0 && is_pair(j - 1)) {
+        const double* first = l + start[j - 1] + 2;
+        double other = x[j - 1] * inverse_d[j - 1];
+        for (int p = 0; p < count[j] - 1; ++p) {
+          sum -= second[p] * x[below[p]];
+          other -= first[p] * x[below[p]];
+        }
+        x[j] = sum;
+        --j;
+        x[j] = other - first[-1] * sum;
+      } else {
+        for (int p = 0; p < count[j] - 1; ++p) sum -= second[p] * x[below[p]];
+        x[j] = sum;
+      }
+    }
+  }
+
   Common common;
   cholmod_sparse matrix;
   Factor factor;
   std::vector<int> diagonal;  ///< positions of L's or D's positive diagonal in factor->x
   std::vector<int> negative_diagonal;
-  cholmod_dense* y = nullptr;  ///< workspace of cholmod_solve2, kept between calls
+  std::vector<double> inverse;  ///< of D, for LDL'
+  cholmod_dense* y = nullptr;   ///< workspace of cholmod_solve2, kept between calls
   cholmod_dense* e = nullptr;
 };
 
@@ -290,22 +324,25 @@ bool Solver::factorize() {
   int good = 1;
   for (int d : c.diagonal) good &= x[d] > 0.0;
   for (int d : c.negative_diagonal) good &= x[d] < 0.0;
+  c.invert_diagonal();
   return good != 0;
 }
 
 void Solver::solve(const double* b, double* x) {
   Cholmod& c = *cholmod_;
   const int n = static_cast<int>(c.factor->n);
+  if (!c.factor->is_super) {
+    if (x != b) std::copy_n(b, n, x);
+    c.solve_in_place(x);
+    return;
+  }
   cholmod_dense right = view(n, const_cast<double*>(b));
   cholmod_dense solution = view(n, x);
   cholmod_dense* handle = &solution;  // of the right shape, so solve2 keeps it
-  if (c.y != nullptr && !c.factor->is_super) {
-    // A simplicial solve leaves its workspace as 1 x n and asks for 4 x n again, which would
-    // reallocate; the space is still there.
-    c.y->nrow = c.y->d = c.y->nzmax / n;
+  if (!cholmod_solve2(CHOLMOD_A, c.factor.get(), &right, nullptr, &handle, nullptr, &c.y, &c.e,
+                      &c.common)) {
+    throw std::bad_alloc();  // its workspace, in the first call
   }
-  cholmod_solve2(CHOLMOD_A, c.factor.get(), &right, nullptr, &handle, nullptr, &c.y, &c.e,
-                 &c.common);
 }
 
 std::string library_version() {
@@ -321,7 +358,7 @@ std::string library_version() {
 /// that wakes waiting threads, of which there are none, by a system call at each region's end. The
 /// supernodal code has a region or two per supernode. Whoever else calls it gets the runtime's own.
 extern "C" [[gnu::visibility("default")]] void GOMP_parallel(void (*region)(void*), void* data,
-                                                              unsigned threads, unsigned flags) {
+                                                             unsigned threads, unsigned flags) {
   static const auto runtime =
       reinterpret_cast<decltype(&GOMP_parallel)>(dlsym(RTLD_NEXT, "GOMP_parallel"));
   if (mbs::csc_cholmod::on_this_thread || runtime == nullptr) return region(data);

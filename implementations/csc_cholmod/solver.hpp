@@ -31,9 +31,9 @@ struct Method {
 Half preferred_half(Factorization factorization);
 
 /// Fill-reducing order: unknown i becomes `result[i]`. AMD with a postorder of the elimination
-/// tree; for the simplicial code the same fill from the outside in, so that a column seldom waits
-/// for the one before it; for the supernodal code the model's own order where that should be
-/// faster. Otherwise as tuned.
+/// tree; for the simplicial code the same fill by the lowest tree, or minimum degree in rounds, see
+/// low_order(); for the supernodal code the model's own order where that should be faster.
+/// Otherwise as tuned.
 std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method);
 
 /// Cholesky factorization of one symmetric matrix after the other, positive definite or (LDL')
@@ -50,7 +50,7 @@ class Solver {
 
   /// Factorizes the current values. False if a pivot is zero, NaN or of the wrong sign.
   [[nodiscard]] bool factorize();
-  /// x (n) = the factorized matrix \ b (n). They may be the same.
+  /// x (n) = the factorized matrix \ b (n). They may be the same. Throws std::bad_alloc.
   void solve(const double* b, double* x);
 
  private:
