@@ -19,8 +19,8 @@ from study.tools.advise import answer, evidence, main as advise_main, timing, va
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import advise as command, duration
-from study.tools.advise.probe import catalogue, find_speeds, fits, named, serving
-from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
+from study.tools.advise.probe import catalogue, find_speeds, fits, named, probe, serving
+from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed, within
 from study.tools.advise.search import Found, Search
 from study.tools.advise.truth import Truth, spread
 from study.tools.advise.validate import _compare, _reference, fastest, search as exhaustive
@@ -204,9 +204,36 @@ def test_a_timing_is_short_where_steps_are_dear():
     assert timing.stretch(20.0, 2e6, 10.0, 0.1) == 0.5 and timing.stretch(20.0, 2e6, -1.0, 0.1) == 0.1
 
 
-def test_a_deadline_is_for_the_99th_percentile():
+def test_a_deadline_is_for_the_99th_percentile_and_who_was_slower_than_a_late_one_comes_back():
     assert not race({"a": [1.0] * 5}, p99=12.0, deadline_us=10.0)[2]
     assert race({"a": [1.0] * 5}, p99=9.0, deadline_us=10.0)[2]
+    p99 = {"a": 15.0, "b": 8.0, "c": 1.0, "d": 8.0}
+    candidates = [timing.Candidate(PENALTY, name, 1e-3) for name in p99]
+    candidates[3].reason, candidates[3].slower = "promises 1.80 times the least time", True
+    run = lambda one, number: {"status": "ok", "step_us": dict(zip("abcd", (10.0, 13.0, 2e3, 18.0)))[one.implementation],
+                               "step_us_p99": p99[one.implementation]}
+    timing.race(candidates, run, lambda: 1.0, 10.0)
+    assert [(one.implementation, len(one.rows)) for one in timing.ranked(candidates, 10.0)] == [("b", 3)] and not candidates[3].rows
+    p99 |= {"b": 11.0, "c": 11.0}  # all are late: those left out are timed
+    for one in candidates[:3]:
+        one.rows, one.reason, one.slower = [], "", False
+    timing.race(candidates, run, lambda: 1.0, 10.0)
+    assert [(one.implementation, len(one.rows)) for one in timing.ranked(candidates, 10.0)] == [("d", 3)]
+
+
+def test_a_step_longer_than_itself_is_not_in_real_time_whatever_the_deadline():
+    late = timing.Candidate(PENALTY, "a/b", 1e-5, [{"step": 1e-5, "step_us": 9.0, "step_us_p99": 12.0}])
+    assert not timing.ranked([late], 50.0) and late.reason == "99th percentile 12 us: longer than the step of 10 us, not in real time"
+    _, found = search({PENALTY: lambda step: 1e7 * step**2}, {PENALTY: 30.0}, [PENALTY], deadline_us=50.0)
+    assert found[PENALTY].late < 3e-5 and "not in real time" in found[PENALTY].reason
+    advice = asked(deadline_us=50.0, candidates=[late], found=found)
+    what_helps(advice, None)
+    assert advice.helps == ["a larger --error: its steps are longer, and these take longer than the time that they simulate"]
+
+
+def test_a_short_run_that_does_not_end_takes_no_setting_away():
+    _, found = searched_by(lambda setting, step: Pilot(step, "ok", square(step), 7.0), lambda *_: math.inf)
+    assert found[PENALTY].chosen and found[PENALTY].chosen_us == 7.0
     whole, found, ranked = race({"a": [1.0] * 5, "b": [1.0] * 5}, left=iter([1, 0, 0]).__next__)
     assert not whole and [one.implementation for one in ranked] == ["a"]
     assert found["b"].reason == "no time was left to time it"
@@ -218,10 +245,11 @@ class Runs:
     slowdown = 1.0
 
     def __init__(self, row):
-        self.row, self.ran, self.scene = row, [], "bar"
+        self.row, self.ran, self.scene, self.limits = row, [], "bar", []
 
     def __call__(self, *asked, **_):
         self.ran.append(asked[:5])
+        self.limits += asked[5:6]
         return {"status": "ok", "reason": "", "implementation": asked[2]} | self.row(*asked[:5])
 
     def left(self, share=1.0):
@@ -243,7 +271,7 @@ class Invented(Runs):
     """A scene on which errors are a power of the step, and which costs what its setting and its implementation cost."""
 
     DESCRIBED = {"scheme": {"take": "penalty"}, "terms": {"driven_constraints": 0, "factors": 0, "damping": False},
-                 "driven_points": 0, "driven_vectors": 0,
+                 "driven_points": 0, "driven_vectors": 0, "drivers_end": None,
                  "recommendation": [{"implementation": name, "step_us": us} for name, us in (("one/a", 2.0), ("two/b", 3.0))]}
     VARIANTS = {"one/a": {"settings": ["saddle-point"], "dense": False, "library": "none"},
                 "two/b": {"settings": ["saddle-point", "rattle", "multistep6"], "dense": False, "library": "none"}}
@@ -283,6 +311,19 @@ def test_on_an_invented_scene_the_advice_is_about_the_best_of_an_exhaustive_sear
         "ratio"] is None
 
 
+def test_where_all_that_was_timed_is_late_settings_that_promised_less_are_tried():
+    class Late(Invented):
+        COSTS = {"penalty": 5.0, "saddle-point": 1.5}
+
+        def __call__(self, kind, setting, *more, **words):
+            return super().__call__(kind, setting, *more, **words) | ({"step_us_p99": 35.0} if setting.scheme == "saddle-point" else {})
+    for deadline, scheme in ((None, "saddle-point"), (30.0, "penalty")):
+        run = Late()
+        told = answer.as_json(seek(Question("bar", 1e-3, 2.0, deadline, 45.0), [PENALTY, SADDLE], run.DESCRIBED, run.VARIANTS, run), run, "folder")
+        assert told["advice"]["scheme"] == scheme and told["advice"]["step_us"]["p99"] == (20.0 if deadline else 35.0)
+    assert any("99th percentile 35 us: beyond the deadline" == one["why"] for one in told["refused"])
+
+
 def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
     estimate = {"estimate": 0.0114, "low": 0.0103, "high": 0.0125}
     assert answer._error(estimate | {"exact": 0.0098}).startswith("0.0098 m, from the exact motion; by half the step 0.0114 m")
@@ -293,15 +334,16 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     advice = asked(deadline_us=deadline_us, step=step, candidates=[
-        timing.Candidate(PENALTY, name, 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
+        timing.Candidate(PENALTY, name, 8e-3, [{"step": 8e-3, "step_us": us, "step_us_p99": 1.0}] * 3)
         for name, us in (("a", 10.0), ("b", 11.0))])
     advice.candidates += others
     advice.found = {setting: Found(setting, pilots(8e-4, 2e-4), chosen=8e-3) for setting in (PENALTY, SADDLE)}
 
     def row(kind, setting, name, step, duration):
         return {"status": dict(plain).get(name, "ok") if kind == "outcome" else "ok", "setting": setting.name, "step": step,
-                "step_us_p99": p99, "estimate": estimate(step), "exact": exact, "duration": duration}
+                "step_us_p99": p99 if kind == "outcome" else 1e3, "step_us": 20.0, "estimate": estimate(step), "exact": exact, "duration": duration}
     run = Runs(row)
+    advice.timed = lambda one, number: run(f"round{number}", one.setting, one.implementation, one.step, 1.0)
     verify(advice, run)
     return advice, [(name, step) for kind, _, name, step, _ in run.ran if kind == "verification"]
 
@@ -311,6 +353,7 @@ def test_a_candidate_that_fails_gets_a_shorter_step_and_then_one_that_is_known()
     assert ran == [("a", 8e-3)] and advice.chosen.implementation == "a"
     advice, ran = verified(lambda step: 20 * step**2)
     assert ran[0] == ("a", 8e-3) and ran[1][1] < 8e-3 and advice.verified["estimate"] <= 1e-3
+    assert [(row["step"], row["step_us"]) for row in advice.chosen.rows] == [(advice.chosen.step, 20.0)] * 3  # timed again
     advice, ran = verified(lambda step: 2e-4 if step < 5.1e-3 else 1.4e-3)
     assert ran[-1][1] == 5e-3 and len(ran) == 3 and advice.chosen
     advice, _ = verified(lambda step: 1.0)
@@ -325,10 +368,10 @@ def test_a_given_step_is_not_made_shorter():
 
 @pytest.mark.parametrize("us, then", [(12.0, "c"), (30.0, "a")])
 def test_who_was_only_slower_comes_back_when_the_fastest_needs_a_shorter_step(us, then):
-    slower = timing.Candidate(SADDLE, "c", 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
+    slower = timing.Candidate(SADDLE, "c", 8e-3, [{"step": 8e-3, "step_us": us, "step_us_p99": 1.0}] * 3)
     timing.drop_slow([timing.Candidate(PENALTY, "a", 8e-3, [{"step_us": 10.0}]), slower], 1.1, 3)
     assert slower.reason == f"{us / 10:.2f} times slower after round 3"
-    estimates = iter([1.5e-3, 5e-4, 0.0, 0.0])
+    estimates = iter([1.5e-3, 5e-4, *[0.0] * 5])
     advice, ran = verified(lambda step: next(estimates), others=[slower])
     assert [name for name, _ in ran] == ["a", then] and advice.chosen.implementation == then
     assert advice.chosen.reason == ""
@@ -352,16 +395,17 @@ def test_where_the_exact_error_is_known_it_counts_if_it_is_larger():
     assert verified(lambda step: 1e-5, exact=1e-2)[0].chosen is None
 
 
-def test_the_deadline_is_verified_too():
+def test_the_deadline_is_verified_too_by_the_line_that_is_advised():
     advice, ran = verified(lambda step: 1e-4, p99=12.0, deadline_us=10.0)
     assert advice.chosen is None and [name for name, _ in ran] == ["a", "b"]
-    assert advice.candidates[0].reason == "99th percentile 12 us when verified: beyond the deadline"
+    assert advice.candidates[0].reason == "99th percentile 12 us over 1 s, as it would be advised: beyond the deadline"
+    assert verified(lambda step: 1e-4, p99=9.0, deadline_us=10.0)[0].outcome["step_us_p99"] == 9.0
 
 
 def test_what_a_whole_run_was_refused_for_is_told():
     advice, _ = verified(lambda step: 1e-4, plain={"a": "wrong-branch"})
     assert answer._refused(advice)[0]["why"].startswith("wrong-branch as it would be advised")
-    for more, why in (({"p99": 12.0, "deadline_us": 10.0}, "99th percentile 12 us over 1 s: beyond the deadline"),
+    for more, why in (({"p99": 12.0, "deadline_us": 10.0}, "99th percentile 12 us over 1 s, as it would be advised: beyond the deadline"),
                       ({"exact": 1e-2}, "error 0.01 m over 1 s"), ({}, "")):
         assert verified(lambda step: 1e-4, **more)[0].verifications[0]["refused"] == why
 
@@ -418,6 +462,22 @@ def test_who_does_not_simulate_the_scene_is_no_measure_of_who_is_near():
     advice = asked(described=described, variants=variants, speeds={})
     find_speeds(advice, [PENALTY], run)
     assert list(advice.speeds) == ["near/c", "far/b"] and [name for _, _, name, _, _ in run.ran] == ["chains/a", "near/c", "far/b"]
+
+
+def test_a_probe_is_halved_until_it_ends_and_stops_when_the_time_is_spent():
+    described, names = {"scheme": {"take": "penalty"}, "recommendation": [{"implementation": "c", "step_us": 1e7}]}, ("a", "b", "c")
+    variants = {name: {"settings": [], "dense": False} for name in names}
+    ends = 3e-3
+    run = Runs(lambda kind, setting, name, step, *_: {"status": "ok" if step < ends else "refused", "step_us": 5.0})
+    rows, speeds = probe(variants, described, run, 1e-2, 1.0)
+    assert speeds == dict.fromkeys(names, 5.0) and [step for *_, step, _ in run.ran] == [1e-2, 5e-3, 2.5e-3, 2.5e-3, 2.5e-3]
+    ends = 0.0
+    speeds = probe(variants, described, run, 1e-2, 1.0)[1]
+    assert list(speeds) == ["c", "a", "b"] and speeds["c"] == 1e7 and math.isnan(speeds["a"])
+    ends, run.left = 1.0, lambda share=1.0: -1.0
+    advice = asked(described=described | {"recommendation": []}, variants=variants, speeds={})
+    find_speeds(advice, [PENALTY], run)
+    assert list(advice.speeds) == ["a"] and advice.cut_short == ["no time was left to try b, c"] and max(run.limits) <= 20.0
 
 
 def test_the_reference_is_the_fastest_that_simulates_the_scene_in_both_forms():
@@ -598,6 +658,12 @@ def test_the_advised_line_is_over_all_of_the_time_and_without_a_blas_where_it_us
     assert advised_line(line, "KLU", 2.0) == line
 
 
+def test_a_run_ends_before_the_drivers_do():
+    assert [within(5.0, step, 5.0) for step in (1 / 60, 0.0166666666667, 0.0166667)] == [5.0, 5.0, pytest.approx(299 * 0.0166667)]
+    assert within(5.0, 0.0131, None) == within(5.0, 0.0131, 6.0) == 5.0 and within(5.0, 0.0131, 5.0) == pytest.approx(381 * 0.0131)
+    assert advise_main.seconds("1/60") == 0.0166666666667
+
+
 def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
     folder, _, answer = advised
     timed = [run for run in answer["runs"] if run["kind"].startswith("round")]
@@ -623,8 +689,8 @@ def test_a_deadline_that_nothing_meets_is_said(tmp_path):
 
 def test_a_given_step_is_advised_or_nothing(tmp_path):
     done, answer = ask(tmp_path, "--error", "1e-2", "--step", "1/240")
-    assert done.returncode == 0 and answer["question"]["step"] == answer["advice"]["step"] == 0.00416667
-    assert {one["step"] for one in answer["candidates"]} == {0.00416667}
+    assert done.returncode == 0 and answer["question"]["step"] == answer["advice"]["step"] == 0.00416666666667
+    assert {one["step"] for one in answer["candidates"]} == {0.00416666666667}
     done, answer = ask(tmp_path / "exact", "--error", "1e-9", "--step", "1/240")
     assert done.returncode == 1 and not answer["met"] and answer["advice"] is None
     assert answer["why_not"] == "no setting reaches the error in steps of 0.00416667 s" and answer["helps"][0].startswith("--duration")
@@ -668,7 +734,7 @@ def test_the_error_that_pilots_keep_is_named():
 
 def test_a_deadline_that_would_do_is_named_also_where_no_candidate_was_timed():
     advice = asked(deadline_us=2.0, found={PENALTY: Found(
-        PENALTY, pilots(9e-4, 2e-4), reason="a step takes 5 us, beyond the deadline", chosen_us=5.0)})
+        PENALTY, pilots(9e-4, 2e-4), reason="a step takes 5 us, beyond the deadline", chosen_us=5.0, late=1e-2)})
     what_helps(advice, None)
     assert advice.helps == ["--deadline-us 7.2: at best 99 % of the steps take up to about 6 us"]
     assert answer._why_not(advice) == "what is accurate enough is too slow: a step takes 5 us, beyond the deadline"

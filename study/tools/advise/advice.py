@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, tidy
 from study.tools.advise.probe import find_speeds, fits, serving
-from study.tools.advise.runner import REPEATS
+from study.tools.advise.runner import QUICK, REPEATS
 from study.tools.advise.search import Search
 from study.tools.advise.verify import verify, what_helps
 
@@ -31,6 +31,8 @@ class Advice:
     left_out: dict = field(default_factory=dict)    # {implementation: why it is not tried}
     found: dict = field(default_factory=dict)       # {Setting: search.Found}
     candidates: list = field(default_factory=list)
+    timed: object = None                            # (candidate, round) → its row
+    race: object = bool                             # () → whether there was a candidate to time
     verifications: list = field(default_factory=list)
     chosen: object = None                           # timing.Candidate
     verified: dict | None = None                    # its row
@@ -60,8 +62,8 @@ def advise(question, settings, described, variants, run):
               if not fits(setting, described) and serving(setting, variants)]
     find_speeds(advice, usable, run)
     if advice.speeds:
-        _pilots(advice, [setting for setting in usable if advice.serving(setting)], run)
-        _race(advice, run)
+        search = _pilots(advice, [setting for setting in usable if advice.serving(setting)], run)
+        advice.race = lambda: _race(advice, search, run)
         verify(advice, run)
         if not advice.verified:
             what_helps(advice, run)
@@ -80,11 +82,11 @@ def _pilots(advice, settings, run):
     def pilot(setting, step):
         name = advice.serving(setting)[0]
         usual = advice.found[setting].step_us()
-        expected = 3e-6 * run.slowdown * duration / step * (advice.speeds[name] if math.isnan(usual) else usual)
+        expected = 3e-6 * run.slowdown * duration / step * (usual if math.isfinite(usual) else advice.speeds[name])
         if expected > run.left(PILOT_SHARE):
             return None
         run.tell(f"error pilots: {setting.name}, step {step:g} s")
-        found = run.pilot(setting, name, step, duration, min(question.budget / 10 + 4 * expected, max(1.0, run.left(TIMING_SHARE))))
+        found = run.pilot(setting, name, step, duration, min(max(1.0, run.left(TIMING_SHARE)), question.budget / 10 + 4 * expected))
         return None if found.status == "timeout" else found
 
     def quick(setting, step):
@@ -92,35 +94,51 @@ def _pilots(advice, settings, run):
         if run.left(PILOT_SHARE) < 0:
             return None
         name = advice.serving(setting)[0]
-        steps = max(LEAST_STEPS, round(question.budget * QUICK_SHARE / (REPEATS * 1e-6 * advice.speeds[name])))
+        seconds = REPEATS * 1e-6 * advice.speeds[name]  # a step
+        steps = QUICK if math.isnan(seconds) else max(LEAST_STEPS, round(question.budget * QUICK_SHARE / seconds))
         row = run("quick", setting, name, step, min(duration, steps * step), run.slowdown * question.budget / 30)
         return math.inf if row["status"] == "timeout" else row["step_us"]
     search = Search(advice, settings, pilot, quick)
     search.search()
     if search.cut:
         advice.hurry("some error pilots would have taken longer than the time left")
+    return search
 
 
-def _race(advice, run):
+def _race(advice, search, run):
+    """Times the candidates; if all that there were are out, those of settings that had promised less. Returns whether there was any to time."""
     question = advice.question
-    promises = {}  # {(setting, implementation): us a simulated second}
-    for setting, found in advice.found.items():
-        names = advice.serving(setting) if found.chosen else []
-        promises |= {(setting, name): found.step_us() / found.chosen * advice.speeds[name] / advice.speeds[names[0]] for name in names}
-    if not promises:
-        return
-    least = min(promises.values())
-    for (setting, name), promise in sorted(promises.items(), key=lambda item: item[1]):
-        one = timing.Candidate(setting, name, question.step or tidy(advice.found[setting].chosen, question.duration))
-        advice.candidates.append(one)
-        if promise > SLOWER * least:
-            one.reason = f"promises {promise / least:.2f} times the least time, by pilots and probe"
-    length = timing.stretch(question.duration, least, run.left(TIMING_SHARE) / (run.slowdown * REPEATS),
-                            LEAST_STEPS * max(one.step for one in advice.candidates if not one.out))
+    if advice.candidates and all(one.out for one in advice.candidates):
+        search.again()
+    _enlist(advice)
+    if not (new := [one for one in advice.candidates if not one.out and not one.rows]):
+        return False
+    least = min((one.promise for one in new if math.isfinite(one.promise)), default=1e6)
+    length = timing.stretch(question.duration, least, run.left(TIMING_SHARE) / (run.slowdown * REPEATS), LEAST_STEPS * max(one.step for one in new))
     limit = max(5.0, 1e-5 * run.slowdown * REPEATS * least * length)
 
     def timed(one, number):
         run.tell(f"timing: round {number}, {one.implementation}, {one.setting.name}")
-        return run(f"round{number}", one.setting, one.implementation, one.step, length, limit)
+        return run(f"round{number}", one.setting, one.implementation, one.step, max(length, LEAST_STEPS * one.step), limit)
+    advice.timed = timed
     if not timing.race(advice.candidates, timed, lambda: run.left(TIMING_SHARE), question.deadline_us, shorter=not question.step):
         advice.hurry("no time was left for all rounds of timing")
+    return True
+
+
+def _enlist(advice):
+    """Makes candidates of the settings that have a step and none yet."""
+    promises = {}  # {(setting, implementation): us a simulated second}
+    known = {one.setting for one in advice.candidates}
+    for setting, found in advice.found.items():
+        names = advice.serving(setting) if found.chosen and setting not in known else []
+        promises |= {(setting, name): found.step_us() / found.chosen * (advice.speeds[name] / advice.speeds[names[0]] if name != names[0] else 1.0)
+                     for name in names}
+    if unknown := sorted({name for (_, name), promise in promises.items() if not math.isfinite(promise)}):
+        advice.cut_short.append(f"no short run of {', '.join(unknown)} came to its end: timed without knowing how fast they are")
+    least = min((promise for promise in promises.values() if math.isfinite(promise)), default=math.inf)
+    for (setting, name), promise in sorted(promises.items(), key=lambda item: (not math.isfinite(item[1]), item[1])):
+        one = timing.Candidate(setting, name, advice.question.step or tidy(advice.found[setting].chosen, advice.question.duration), promise=promise)
+        advice.candidates.append(one)
+        if math.isfinite(promise) and promise > SLOWER * least:
+            one.reason, one.slower = f"promises {promise / least:.2f} times the least time, by pilots and probe", True

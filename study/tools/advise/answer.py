@@ -1,12 +1,11 @@
 # The answer as JSON (its keys: README.md) and as text.
-import math
-
 from analysis.core.outcomes import FINISHED, GOOD
 from analysis.core.text import number
 from study.tools.advise.choice import counts, halvings
 from study.tools.advise.probe import catalogue, fits, serving
-from study.tools.advise.runner import advised
+from study.tools.advise.runner import advised, within
 from study.tools.advise.search import Found
+from study.tools.advise.timing import in_time
 from study.tools.advise.verify import expected_error
 
 MOST_REASONS = 3  # of pilots that were lost
@@ -35,21 +34,21 @@ def _busy(waited):
 def _times(one):
     """Time of a step and of a simulated second, with the least and the most of the rounds, us; None without any."""
     if not one.rows:
-        return {"step_us": None, "us_per_second": None, "rounds": 0}
+        return {"step_us": None, "us_per_second": None, "rounds": 0, "timed_step": None}
     middle, low, high = one.us_per_second()
     return {"step_us": {"median": middle * one.step, "low": low * one.step, "high": high * one.step, "p99": one.p99_us()},
-            "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows)}
+            "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows), "timed_step": one.rows[-1]["step"]}
 
 
 def _advised(advice):
-    one, row, changes = advice.chosen, advice.verified, dict(advice.chosen.setting.changes)
-    low, high = expected_error(advice, one, row)
+    one, row, line, changes = advice.chosen, advice.verified, advice.outcome, dict(advice.chosen.setting.changes)
+    (low, high), times, end = expected_error(advice, one, row), _times(one), advice.described["drivers_end"]
     return {"implementation": one.implementation, "setting": one.setting.name, "scheme": one.setting.scheme, "changes": changes,
             "precision": changes.get("precision", "double"), "step": one.step, "penalty": row["penalty"], "tolerance": row["tolerance"],
-            "status": advice.outcome["status"], "status_reason": advice.outcome["reason"], "verified_over": row["duration"],
+            "status": line["status"], "status_reason": line["reason"], "verified_over": within(row["duration"], one.step, end),
             "error": {"estimate": row["estimate"], "low": low, "high": high, "exact": row["exact"]},
-            **_times(one), "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": advised(advice.outcome["command"], advice.variants[one.implementation]["library"], advice.question.duration),
+            **times, "step_us": times["step_us"] | {"p99": line["step_us_p99"]}, "deadline_misses": line["deadline_misses"], "steps": line["steps"],
+            "command": advised(line["command"], advice.variants[one.implementation]["library"], within(advice.question.duration, one.step, end)),
             "raw_file": row["raw_file"]}
 
 
@@ -77,6 +76,8 @@ def _refused(advice):
     """Why what would be faster is not advised: whole runs that failed, and the slowest pilot of each such setting, the fastest first."""
     best = advice.chosen.us_per_second()[0]
     found = [(0.0, row["setting"], row["step"], row["refused"]) for row in advice.verifications[:-1]]
+    late = [one for one in advice.candidates if one.late_us and one.reason not in {reason for *_, reason in found}]
+    found += [(us, one.setting.name, one.step, one.reason) for one in late if (us := one.us_per_second()[0]) < best]
     for one in advice.found.values():
         faster = (pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
                   and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting]))
@@ -99,7 +100,7 @@ def _why_not(advice):
         return "no candidate kept it over the whole time"
     if any(one.chosen for one in found):
         return "no candidate could be timed"
-    if slow := [one.reason for one in found if one.chosen_us > (question.deadline_us or math.inf)]:
+    if slow := [one.reason for one in found if one.late]:
         return f"what is accurate enough is too slow: {slow[0]}"
     pilots = [pilot for one in found for pilot in one.pilots]
     if pilots and not any(pilot.status in FINISHED for pilot in pilots):
@@ -144,10 +145,13 @@ def _advice_lines(answer):
             "precision": [told["precision"]], "expected error": [f"{_error(told['error'])}, verified over {told['verified_over']:g} s"],
             "ends as": _ends_as(told),
             "time per step": [f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
-                              f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"],
+                              f"round{'s' * (told['rounds'] > 1)}"
+                              + f" of step {told['timed_step']:g} s" * (told["timed_step"] != told["step"])
+                              + f"; with them, over {told['verified_over']:g} s, 99th percentile {number(step['p99'])} us"],
             "per simulated second": [_spread(times["median"], times, "ms", 1e-3)]}
     if told["deadline_misses"] is not None:
-        rows["deadline"] = [f"{told['deadline_misses']} of {told['steps']} steps took longer"]
+        limit = number(in_time(told["step"], answer["question"]["deadline_us"]))
+        rows["deadline"] = [f"{told['deadline_misses']} of {told['steps']} steps of this very line took longer than {limit} us"]
     if second:
         rows["runner-up"] = [f"{second['implementation']}, {second['setting']}, step {second['step']:g} s", second["why"]]
     rows["faster, but refused"] = [f"{one['setting']}, step {one['step']:g} s: {one['why']}" for one in answer["refused"][:MOST_REFUSED]]

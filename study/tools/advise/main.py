@@ -84,7 +84,7 @@ def ask(options, folder=None):
     say = partial(print, file=sys.stderr, flush=True)  # standard output may be JSON
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
         clock = {"budget": question.budget, "began": time.monotonic() - spent}  # without the time of waiting
-        run = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us, options.json, **clock)
+        run = runner_of(folder, inputs, described, names, known, question.deadline_us, options.json, **clock)
         advice = seek(question, catalogue(), described, {name: known.variants[name] for name in names}, run)
         run.lab.display.end()
         answer = as_json(advice, run, folder)
@@ -92,16 +92,17 @@ def ask(options, folder=None):
     return answer
 
 
-def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False, **clock):
+def runner_of(folder, inputs, described, names, known, deadline_us=None, quiet=False, **clock):
     """The Runner of a scene and its records in `folder`; `clock`: `budget` and `began`."""
     lab, contenders = open_shelf(folder, "advise", known, names, names, quiet, question=inputs)
-    return Runner(lab, inputs["scene"], variables, contenders, deadline_us, **clock)
+    return Runner(lab, inputs["scene"], described["variables"], contenders, deadline_us, end=described["drivers_end"], **clock)
 
 
 def seconds(text):
     """A number or a fraction of numbers; ValueError, which argparse tells, for others."""
     over, _, under = text.partition("/")
-    return positive(str(positive(over) / positive(under))) if under else positive(text)
+    value = float(over) / (float(under) if under and positive(under) else 1.0)
+    return positive(f"{value:g}") and float(f"{value:.12g}")  # as it is passed on
 
 
 def _need_possible(question):

@@ -6,7 +6,7 @@ from itertools import product
 from analysis.core.outcomes import FINISHED
 from study.core.setting import LOOSENED, Setting
 from study.tools.advise.choice import LEAST_STEPS
-from study.tools.advise.runner import QUICK
+from study.tools.advise.runner import QUICK, REPEATS
 from study.tools.advise.search import LOST
 
 PROJECTIONS = dict.fromkeys(("penalty", "saddle-point"), ("both", "velocity", "none"))
@@ -17,7 +17,9 @@ OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(schem
 BEHIND = 3.0  # times the least time that the rule foresees: who is slower is not tried; its times are right to a factor of
               # 1.5, mostly
 DEAR = 100.0  # us a step from which probes are as short as they can be
-LONGEST = 20.0  # s, of the first probe
+LONGEST = 20.0  # s, of a probe
+HALVINGS = 7    # of a probe's step, for a run that comes to its end
+SHARE = 0.3     # of the budget: when probes must be done; twice that while there is no time of any
 
 
 def catalogue():
@@ -50,6 +52,9 @@ def find_speeds(advice, settings, run):
                             advice.question.first_step, advice.question.duration)
         advice.probe += rows
         advice.speeds, seen = _sorted(advice.speeds | found), seen | set(tried)
+        if missed := seen - {row["implementation"] for row in advice.probe}:
+            advice.hurry(f"no time was left to try {', '.join(sorted(missed))}")
+            return
         if not (unable := [row["implementation"] for row in rows if row["status"] == "unsupported"]):
             return
         able = {name: said for name, said in able.items() if name not in unable}
@@ -74,19 +79,27 @@ def named(described, variants, settings):
 
 
 def probe(variants, described, run, step, duration):
-    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the rule's form; foreseen if the step is too long."""
+    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the rule's form and in steps so short that a run
+    comes to its end; foreseen or nan if none does. Those for which no time is left have no row."""
     rows, speeds, foreseen = [], {}, _foreseen(described, variants)
     form = Setting(described["scheme"]["take"])
+    shortest = step / 2**HALVINGS
     for name in variants:
         run.tell(f"probe: {name}")
-        usual = min([*speeds.values(), foreseen.get(name, math.inf)])
-        limit = 1.0 + 20e-6 * QUICK * usual if speeds else max(2.0, min(LONGEST, run.left(0.3)))
+        usual = min([foreseen.get(name, math.inf), *(us for us in speeds.values() if us > 0)])
+        steps, at = QUICK if usual < DEAR else LEAST_STEPS, step
         setting = form if name in serving(form, variants) else Setting()
-        rows.append(run("probe", setting, name, step, min(duration, (QUICK if usual < DEAR else LEAST_STEPS) * step), limit))
-        if rows[-1]["status"] in FINISHED:
-            speeds[name] = rows[-1]["step_us"]
-        elif rows[-1]["status"] in LOST:  # passes of steps that are too long say little
-            speeds[name] = foreseen.get(name, rows[-1]["step_us"] or 10.0 * len(rows))
+        while (left := run.left(SHARE if (known := any(row["status"] in FINISHED for row in rows)) else 2 * SHARE)) > 0 or not rows:
+            limit = min(LONGEST, max(2.0, left), 1.0 + 7e-6 * run.slowdown * REPEATS * steps * usual if known else math.inf)
+            rows.append(run("probe", setting, name, at, min(duration, steps * at), limit))
+            if rows[-1]["status"] in FINISHED:
+                speeds[name], step = rows[-1]["step_us"], at
+                break
+            if rows[-1]["status"] in LOST or at < step:  # passes of steps that are too long say little
+                speeds[name] = foreseen.get(name, math.nan)
+            if rows[-1]["status"] not in LOST or at <= shortest:
+                break
+            at /= 2
     return rows, _sorted(speeds)
 
 
@@ -95,4 +108,4 @@ def _foreseen(described, variants):
 
 
 def _sorted(speeds):
-    return dict(sorted(speeds.items(), key=lambda item: item[1]))
+    return dict(sorted(speeds.items(), key=lambda item: (math.isnan(item[1]), item[1])))

@@ -10,6 +10,7 @@ from analysis.core.files import digest
 from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
+from study.tools.advise.timing import in_time
 
 EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact one, where it is known; an estimate, too
 # Judged after every step, as the usual judging of a few may keep pace with the motion and miss its worst; but where steps
@@ -30,10 +31,15 @@ def typed(record):
     return shlex.join(["build/mbs", *(word for word in record.command[1:] if word != "--json")])
 
 
+def within(duration, step, end):
+    """A duration, or so much of it as whole steps, of which a run has the nearest number, cover before the drivers' `end`, if they have one."""
+    return duration if math.floor(duration / step + 0.5) * step <= (end or math.inf) * (1 + 1e-9) else math.floor(duration / step) * step
+
+
 def advised(command, library, duration):
     """A command line as it is advised: over all of the time, without a BLAS where `library` of `mbs list --json` is "none"."""
     words = shlex.split(command)
-    words[words.index("--duration") + 1] = f"{duration:g}"
+    words[words.index("--duration") + 1] = f"{duration:.12g}"
     if library == "none" and "--blas" in words:
         at = words.index("--blas")
         del words[at:at + 2]
@@ -44,11 +50,11 @@ class Runner:
     """Runs simulations of one scene one after the other, and keeps a row of each. It has the clock of the question: `budget`, s, which began
     at `began` (of time.monotonic). `truth`: where it is known, what a run's series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, variables, contenders, deadline_us=None, budget=math.inf, began=None):
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None, budget=math.inf, began=None, end=None):
         self.lab, self.scene, self.variables, self.truth = lab, scene, variables, None
         self.budget, self.began = budget, time.monotonic() if began is None else began
         self.contenders = {one.name: one for one in contenders}
-        self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
+        self.deadline_us, self.end = deadline_us, end
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
         self.automatic = {}  # {(scheme, step): the automatic tolerance, m}
 
@@ -57,12 +63,13 @@ class Runner:
         mean over the steps of each one's least time over the repeats; the other times are those of the first repeat."""
         record = None
         if setting.loosened and (setting.scheme, step) not in self.automatic:  # a run of one step tells the automatic tolerance
-            record = self._simulate("automatic", setting.parent, variant, step, step, 60, setting.parent.words())
+            record = self._simulate("automatic", setting.parent, variant, step, step, seconds, setting.parent.words())
         tolerance = (setting.loosened or 0.0) * self.automatic.get((setting.scheme, step), 0.0)
         if tolerance or not setting.loosened:  # else the row is that of the run which should have told it
             repeated = ("--repeats", repeats) if repeats > 1 and checks != HALVED else ()
             every = max(1, min(int(duration / step / JUDGED), int(duration / step * self.variables / VALUES)))
-            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *["--half-step"] * (checks == HALVED),
+            deadline = ("--deadline-us", f"{in_time(step, self.deadline_us):g}") if self.deadline_us else ()
+            words = [*setting.words(tolerance=tolerance), *deadline, *repeated, *["--half-step"] * (checks == HALVED),
                      *(("--judge-every", every) if checks else ())]
             record = self._simulate(kind, setting, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
@@ -99,7 +106,7 @@ class Runner:
     def _simulate(self, kind, setting, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}
         known, began = len(self.lab.names), time.monotonic()
-        words = ("--step", f"{step:g}", "--duration", f"{duration:g}", *words)
+        words = ("--step", f"{step:.12g}", "--duration", f"{within(duration, step, self.end):.12g}", *words)
         record = self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), words, kind, timed=True, seconds=round(seconds, 3), **seen))
         if len(self.lab.names) > known:
             if time.monotonic() - began > 0.9 * record.seconds:

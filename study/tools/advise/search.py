@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from analysis.core.outcomes import FINISHED
 from study.tools.advise.choice import counts, enough, local_order, next_at, next_step
+from study.tools.advise.timing import beyond, in_time
 
 SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
 NEAR = 1.15      # make up for it; a change of it while it promises less than that
@@ -22,6 +23,8 @@ class Found:
     reason: str = ""             # why it has none
     quick_us: float = math.nan   # of a step, in a short run before any pilot
     chosen_us: float = math.nan  # of the chosen step
+    late: float | None = None    # step, s, that it would have but for the deadline
+    out: bool = False            # it has a step, but all its candidates dropped out
     parent: object = None        # the Found of its scheme without changes, where that is another setting
 
     open = property(lambda self: self.chosen is None and not self.reason)
@@ -60,7 +63,13 @@ class Search:
 
     def best(self):
         """Least time of a simulated second among the settings that have a step, us."""
-        return min((self.promise(one) for one in self.found.values() if one.chosen), default=math.inf)
+        return min((self.promise(one) for one in self.found.values() if one.chosen and not one.out), default=math.inf)
+
+    def again(self):
+        """Where nothing of what has a step may be advised: steps for what promised less."""
+        for one in self.found.values():
+            one.out, one.reason = bool(one.chosen), "" if one.reason.startswith("promises") else one.reason
+        self.search()
 
     def promise(self, one):
         """Time of a simulated second that a setting may reach, us; 0 where nothing is known."""
@@ -138,6 +147,8 @@ class Search:
         """Gives a setting its step, or the reason why it has none."""
         one.chosen, one.reason = chosen, "" if chosen else reason
         if chosen:
-            one.chosen_us = self.quick(one.setting, chosen) or one.step_us()
-            if one.chosen_us > (self.asked.deadline_us or math.inf):
-                one.chosen, one.reason = None, f"a step takes {one.chosen_us:.3g} us, beyond the deadline"
+            quick = self.quick(one.setting, chosen)
+            one.chosen_us = quick if quick and math.isfinite(quick) else one.step_us()
+            if one.chosen_us > in_time(chosen, self.asked.deadline_us):
+                one.chosen, one.late = None, chosen
+                one.reason = f"a step takes {one.chosen_us:.3g} us, {beyond(chosen, one.chosen_us, self.asked.deadline_us)}"

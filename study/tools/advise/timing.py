@@ -21,8 +21,9 @@ class Candidate:
     step: float
     rows: list = field(default_factory=list)
     reason: str = ""       # why it dropped out
-    slower: bool = False   # than others as they were then: that is why
+    slower: bool = False   # than others as they were then, or by what it promises, and then it has no rows: that is why
     late_us: float = 0.0   # its 99th percentile, where that is why
+    promise: float = field(default=math.nan, compare=False)  # of a simulated second, us
     kept: bool = field(default=False, compare=False)  # it is timed in every round, however slow
 
     out = property(lambda self: bool(self.reason))
@@ -36,8 +37,20 @@ class Candidate:
         """Median over the rounds."""
         return median(row["step_us_p99"] for row in self.rows) if self.rows else math.inf
 
-    def drop_late(self, p99_us, when=""):
-        self.reason, self.late_us = f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us
+    def drop_late(self, p99_us, deadline_us, when="", times=1):
+        """Drops it if that is beyond so many times the deadline, or the step itself; says whether."""
+        if late := bool(deadline_us) and p99_us > times * in_time(self.step, deadline_us):
+            self.reason, self.late_us = f"99th percentile {p99_us:.3g} us{when}: {beyond(self.step, p99_us, deadline_us)}", p99_us
+        return late
+
+
+def in_time(step, deadline_us):
+    """How long a step may take, us: no longer than itself, or a loop cannot hold it. Any time without a deadline."""
+    return min(deadline_us, 1e6 * step) if deadline_us else math.inf
+
+
+def beyond(step, us, deadline_us):
+    return "beyond the deadline" if us > deadline_us else f"longer than the step of {1e6 * step:.3g} us, not in real time"
 
 
 def stretch(duration, us_per_second, seconds, least):
@@ -47,13 +60,15 @@ def stretch(duration, us_per_second, seconds, least):
 
 
 def race(candidates, run, left, deadline_us=None, shorter=False):
-    """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether there was time for all; slow
-    ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot covered less of the motion, gets a shorter step."""
-    for number in range(1, ROUNDS + TIE_BREAKS + 1):
+    """Times the candidates that have no rows of a round yet; `run(candidate, round)` gives one, `left()` the seconds left. Returns whether there
+    was time for all; slow and late ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot covered less of the
+    motion, gets a shorter step."""
+    number = 1
+    while number <= ROUNDS + TIE_BREAKS:
         running = _running(candidates)
         if number > ROUNDS and (len(running) < 2 or decided(running)):
             break
-        for one in running:
+        for one in (one for one in running if len(one.rows) < number):
             if left() <= 0 and any(other.rows for other in candidates):
                 for other in _running(candidates):
                     other.reason = "" if other.rows else "no time was left to time it"
@@ -68,14 +83,31 @@ def race(candidates, run, left, deadline_us=None, shorter=False):
                 one.rows.append(row)
             else:  # a stretch may end lost where the whole run is not: another candidate, then
                 one.reason = f"{row['status']} while it was timed: {row['reason']}"
-            if deadline_us and one.rows and one.p99_us() > 2 * deadline_us:
-                one.drop_late(one.p99_us())
-        drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
+        if drop_late(candidates, deadline_us, ROUNDS):
+            number = 1  # for those that came back
+        else:
+            drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
+            number += 1
     return True
 
 
 def _running(candidates):
     return [one for one in candidates if not one.out]
+
+
+def drop_late(candidates, deadline_us, rounds=1):
+    """Drops who is late by so many rounds, or by far after fewer. Returns whether that changes who may be the fastest: see `come_back`."""
+    late = [one for one in _running(candidates) if one.rows and one.drop_late(one.p99_us(), deadline_us, times=1 if len(one.rows) >= rounds else 2)]
+    return come_back(candidates, late) or bool(late)
+
+
+def come_back(candidates, dropped):
+    """If any were dropped, those that were slower than they come back, and if nobody is left, those that promised less. Returns whether any do."""
+    slower = [one for one in candidates if one.slower]
+    back = [one for one in slower if one.rows and dropped] or ([] if _running(candidates) else slower)
+    for one in back:
+        one.slower, one.reason = False, ""
+    return bool(back)
 
 
 def drop_slow(candidates, factor, number):
@@ -94,7 +126,6 @@ def decided(running):
 
 def ranked(candidates, deadline_us=None):
     """Those that may be advised, fastest first; a 99th percentile beyond the deadline is a reason to drop."""
-    for one in _running(candidates):
-        if deadline_us and one.p99_us() > deadline_us:
-            one.drop_late(one.p99_us())
+    while drop_late(candidates, deadline_us):
+        pass
     return sorted((one for one in _running(candidates) if one.rows), key=lambda one: one.us_per_second()[0])

@@ -49,7 +49,7 @@ def validate(options, ask, runner_of, results):
             described = describe(scene)
             errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):
-                run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
+                run = runner_of(folder, {"scene": scene, "duration": duration}, described, names, known)
                 if not scene.startswith("four-bar:"):  # of which the exact motion is known
                     run.tell(f"{scene}: reference")
                     run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants, run)],

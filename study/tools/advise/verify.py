@@ -18,8 +18,11 @@ def verify(advice, run):
     """Whole runs of the fastest candidate, until one is as accurate as asked; then `advice.outcome`, the line as advised, without a check."""
     question = advice.question
     for _ in range(VERIFICATIONS):
-        if not (one := next(iter(timing.ranked(advice.candidates, question.deadline_us)), None)):
+        while not (ranked := timing.ranked(advice.candidates, question.deadline_us)) and advice.race():
+            pass
+        if not ranked:
             return
+        one = ranked[0]
         seconds = max(run.left(), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
         if not (duration := _affordable(one, question, seconds / run.slowdown)):
             advice.hurry("no time was left to verify another candidate")
@@ -30,14 +33,12 @@ def verify(advice, run):
             row["estimate"] = max([row["estimate"], *(pilot.estimate for pilot in advice.found[one.setting].pilots
                                                       if pilot.valid and pilot.step < one.step)])
         advice.verifications.append(row)
-        row["refused"] = _refused(one, row, advice)
+        row["refused"] = _refused(one, row, advice) or _as_advised(one, advice, run, duration, seconds + 2)
         if row["refused"]:
+            timing.come_back(advice.candidates, [one])  # what beat them has become slower itself, or is out
             continue
-        run.tell("the advised line itself")
-        advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
-        if advice.outcome["status"] not in FINISHED:
-            row["refused"] = one.reason = f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}"
-            continue
+        again = range(1, timing.ROUNDS + 1) if one.rows[-1]["step"] != one.step else ()
+        one.rows = [row for row in (advice.timed(one, number) for number in again if run.left() > 0) if row["status"] in FINISHED] or one.rows
         advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
         if duration < question.duration:
             advice.cut_short.append(f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
@@ -54,25 +55,30 @@ def _affordable(one, question, seconds):
 
 
 def _refused(one, row, advice):
-    """Why a whole run is not as accurate, or not as punctual, as asked, after which there is a shorter step for all candidates of its setting,
-    or one candidate less; "" if it is both."""
+    """Why a whole run is not as accurate as asked, after which there is a shorter step for all candidates of its setting, or one candidate less;
+    "" if it is."""
     question, exact, over = advice.question, row["exact"], f"over {row['duration']:g} s"
     lost = row["status"] not in FINISHED or row["estimate"] is None
     allowed = question.error * row["duration"] / question.duration
     excess = 0 if lost else (expected_error(advice, one, row)[1] if exact is None else exact) / allowed  # what is known exactly needs no margin
-    if not lost and excess <= 1 and not (question.deadline_us and row["step_us_p99"] > question.deadline_us):
+    if not lost and excess <= 1:
         return ""
-    for other in advice.candidates:
-        if other.slower and other.rows:  # what beat it has become slower itself
-            other.slower, other.reason = False, ""
     if lost:
         one.reason = f"{row['status']} when verified {over}: {row['reason']}"
         return f"{row['status']}: {row['reason']}"
-    if excess <= 1:
-        one.drop_late(row["step_us_p99"], " when verified")
-        return f"99th percentile {row['step_us_p99']:.3g} us {over}: beyond the deadline"
     _shorten(one, row, excess, advice)
     return f"estimate {number(row['estimate'])} m {over}, and no margin" if exact is None else f"error {number(exact)} m {over}"
+
+
+def _as_advised(one, advice, run, duration, seconds):
+    """Why the advised line itself, without a check, does not end or is not as punctual as asked, after which there is one candidate less; or ""."""
+    run.tell("the advised line itself")
+    row = advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds, repeats=1)
+    if row["status"] not in FINISHED:
+        one.reason = f"{row['status']} as it would be advised: {row['reason']}"
+    else:
+        one.drop_late(row["step_us_p99"], advice.question.deadline_us, f" over {duration:g} s, as it would be advised")
+    return one.reason
 
 
 def _shorten(one, row, excess, advice):
@@ -83,7 +89,7 @@ def _shorten(one, row, excess, advice):
         step = found.rung() if failed > 2 else max(step, found.rung())
     for other in (other for other in advice.candidates if other.setting == one.setting):
         if question.step or failed > 4 or step < one.step / 8:
-            other.reason = f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s"
+            other.slower, other.reason = False, f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s"
         else:
             other.step = tidy(step, question.duration)
 
@@ -111,11 +117,13 @@ def what_helps(advice, run):
     if question.step and pilot.valid and pilot.estimate > question.error:
         fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order))
         steps = [question.step / parts for parts in (fewest, 2 * fewest, 4 * fewest)]  # the order may not show in steps this long
-        _first_kept(advice, setting, [(f"--step {step:g}", step, question.duration) for step in steps],
+        _first_kept(advice, setting, [(f"--step {step:.12g}", step, question.duration) for step in steps],
                     f"in such steps {setting.name} keeps the error", run)
-    slow = [P99 * one.chosen_us for one in found if one.chosen_us > (question.deadline_us or math.inf)]
-    if late := [one.late_us for one in advice.candidates if one.late_us] + slow:
-        advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: at best 99 % of the steps take up to about {min(late):.3g} us")
+    late = [(one.late_us, one.step) for one in advice.candidates if one.late_us] + [(P99 * one.chosen_us, one.late) for one in found if one.late]
+    if soon := min((us for us, step in late if 1.2 * us <= 1e6 * step), default=None):
+        advice.helps.append(f"--deadline-us {1.2 * soon:.3g}: at best 99 % of the steps take up to about {soon:.3g} us")
+    elif late:
+        advice.helps.append("a larger --error: its steps are longer, and these take longer than the time that they simulate")
     else:
         step = question.step or pilot.step
         durations = [float(f"{question.duration / 2**halving:.3g}") for halving in range(1, HALVES + 1)]
