@@ -53,8 +53,9 @@ bool AdjustableSimulation<Form>::iterate(StepOutcome& outcome) {
     const double largest = this->correct();
     const bool converged = largest <= settings_.tolerance;
     if (converged && (every_pass || previous_converged)) outcome.status = StepStatus::converged;
-    if (projected() && !refined_ && this->passes_end(outcome)) this->project();
-    this->evaluate();
+    const bool last = this->passes_end(outcome);
+    if (last && projected() && !refined_) this->project();
+    if (!last || Form::kUpdatesMultipliers || (projected() && refined_)) this->evaluate();
     if (every_pass || converged) this->update_multipliers();
     if (settings_.tangent == TangentReuse::kept && !first && !converged &&
         !(largest <= 0.25 * previous)) {

@@ -65,6 +65,7 @@ class PenaltyForm {
   /// Applies what solve() made of lambda: nothing here.
   void correct_multipliers() {}
   /// lambda after a pass, with Phi at the new q'.
+  static constexpr bool kUpdatesMultipliers = true;
   void update_multipliers() {
     mechanism_.lambda += penalty_ * mechanism_.constraints.phi();  // Eq. (1)
   }

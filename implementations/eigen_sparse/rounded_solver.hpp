@@ -13,8 +13,9 @@ class RoundedSolver {
   [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern) {
     return Solver<float>::elimination_order(pattern);
   }
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern) {
-    return Solver<float>::equivalent_order(pattern);
+  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
+                                                         const Followers& followers) {
+    return Solver<float>::equivalent_order(pattern, followers);
   }
 
   RoundedSolver(const SparseMatrix& matrix, Definiteness definiteness)

@@ -63,7 +63,8 @@ class SaddleForm {
 
   /// lambda after a pass, with mu of its solve().
   void correct_multipliers() { mechanism_.lambda += (1.0 / quarter_) * multiplier_; }
-  /// Phi at the new q' adds nothing here.
+  /// Phi at the new q' adds nothing to lambda here.
+  static constexpr bool kUpdatesMultipliers = false;
   void update_multipliers() {}
 
  private:

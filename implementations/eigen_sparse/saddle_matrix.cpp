@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "saddle_order.hpp"
+
 namespace mbs::eigen_sparse {
 namespace {
 
@@ -13,9 +15,9 @@ constexpr double kFarBelow = 1e-3;
 /// The unknowns that each row owns.
 using Owned = std::vector<std::vector<int>>;
 
-/// Lets each row in front of `first` own a point that no other row has (`rows_with`: by unknown, how
-/// many have it). The row's other points lean on it then, so that it must not be far heavier than
-/// they are.
+/// Lets each row in front of `first` own a point that no other row has (`rows_with`: by unknown,
+/// how many have it). The row's other points lean on it then, so that it must not be far heavier
+/// than they are.
 void own_points(const Model& model, const Coordinates& coordinates, const RowSparseMatrix& jacobian,
                 int first, const std::vector<int>& rows_with, Owned& owned) {
   Vector mass = Vector::Zero(jacobian.cols());
@@ -73,35 +75,38 @@ Owned owned_unknowns(const Model& model, const Coordinates& coordinates,
   return owned;
 }
 
-/// Where the unknowns, then the multipliers are stored. The unknowns keep their order; a multiplier
-/// follows the last one that its row of Phi_q has. But a row that owns unknowns follows the last of
-/// these, and rows that have one of them wait for the unknowns of its owner too.
-std::vector<int> interleaved(const RowSparseMatrix& jacobian, const Owned& owned) {
+/// A multiplier follows the unknowns that its row of Phi_q has. But a row that owns unknowns
+/// follows these, and rows that have one of them wait for the unknowns of its owner too.
+Followers followers_of(const RowSparseMatrix& jacobian, const Owned& owned) {
   const auto unknowns = static_cast<int>(jacobian.cols());
-  std::vector<int> last(jacobian.rows()), order(jacobian.rows()), owner(unknowns, -1);
+  Followers followers(unknowns + jacobian.rows());
+  std::vector<int> owner(unknowns, -1);
   for (int row = 0; row < jacobian.rows(); ++row) {
-    for (const int unknown : owned[row]) owner[unknown] = row;
-    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
-      last[row] = std::max(last[row], static_cast<int>(it.col()) + 1);
+    for (const int unknown : owned[row]) {
+      owner[unknown] = row;
+      followers[unknown].push_back(unknowns + row);
     }
   }
-  std::vector<int> in_front = last;
   for (int row = 0; row < jacobian.rows(); ++row) {
+    if (!owned[row].empty()) continue;
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
-      if (owner[it.col()] >= 0) in_front[row] = std::max(in_front[row], last[owner[it.col()]]);
+      followers[it.col()].push_back(unknowns + row);
+      if (owner[it.col()] < 0) continue;
+      for (RowSparseMatrix::InnerIterator of(jacobian, owner[it.col()]); of; ++of) {
+        followers[of.col()].push_back(unknowns + row);
+      }
     }
-    if (!owned[row].empty()) in_front[row] = std::ranges::max(owned[row]) + 1;
   }
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return in_front[a] < in_front[b]; });
-  std::vector<int> place(unknowns + order.size());
-  auto row = order.begin();
-  for (int unknown = 0, next = 0; unknown <= unknowns; ++unknown) {
-    for (; row != order.end() && in_front[*row] == unknown; ++row) place[unknowns + *row] = next++;
-    if (unknown < unknowns) place[unknown] = next++;
+  return followers;
+}
+
+/// `followers` where `place` puts them.
+Followers placed(const Followers& followers, std::span<const int> place) {
+  Followers result(followers.size());
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    for (const int follower : followers[i]) result[place[i]].push_back(place[follower]);
   }
-  return place;
+  return result;
 }
 
 /// Eqs. (12), (14) with `upper_left` (n x n, both triangles) and Phi_q as it is; both triangles.
@@ -135,14 +140,18 @@ SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
                            Stiffness stiffness, Reorder reorder)
     : triangle_(triangle),
       variables_(model.variables()),
-      place_(interleaved(constraints.jacobian(),
-                         owned_unknowns(model, coordinates, constraints.jacobian(),
-                                        constraints.quadratic()))) {
+      place_(model.variables() + model.constraints()) {
   const RowSparseMatrix& jacobian = constraints.jacobian();
   const SparseMatrix upper_left = stiffness == Stiffness::added
                                       ? stiffness_pattern(model, coordinates)
                                       : SparseMatrix(mass_matrix(model, coordinates));
-  const std::vector<int> order = reorder(assembled(upper_left, jacobian, epsilon, place_));
+  const Followers followers =
+      followers_of(jacobian, owned_unknowns(model, coordinates, jacobian, constraints.quadratic()));
+  std::iota(place_.begin(), place_.end(), 0);
+  place_ = saddle_order(assembled(upper_left, jacobian, epsilon, place_), model.variables(),
+                        followers, triangle);
+  const std::vector<int> order =
+      reorder(assembled(upper_left, jacobian, epsilon, place_), placed(followers, place_));
   for (int& place : place_) place = order[place];
   matrix_ = assembled(upper_left, jacobian, epsilon, place_);
   if (triangle == Triangle::upper) matrix_ = SparseMatrix(matrix_.triangularView<Eigen::Upper>());

@@ -15,14 +15,14 @@ namespace mbs::eigen_sparse {
 enum class Stiffness { none, added };
 
 /// [T0, Phi_q^T; Phi_q, -epsilon] of Eqs. (12) and (14): n + m rows and columns, each multiplier
-/// behind the last unknown of its row of Phi_q.
+/// behind the unknowns of its row of Phi_q, or behind those that the row owns.
 ///
 /// Example: unknowns 0, 1, 2 and a row of Phi_q with entries at 0 and 1 are stored in the order
 /// 0, 1, multiplier, 2: unknowns() is 0, 1, 3 and multipliers() is 2.
 class SaddleMatrix {
  public:
   /// An order equivalent to the present one, as Solver::equivalent_order() gives it.
-  using Reorder = std::vector<int> (*)(const SparseMatrix& pattern);
+  using Reorder = std::vector<int> (*)(const SparseMatrix& pattern, const Followers& followers);
 
   /// The values start with Phi_q of linear constraints alone.
   SaddleMatrix(const Model& model, const Coordinates& coordinates, const Constraints& constraints,

@@ -54,18 +54,26 @@ class FilledGraph {
   int eliminated_ = 0;
 };
 
-/// Rounds of Jess and Kees: each eliminates as many independent vertices as it can without fill.
-std::vector<int> positions_by_rounds(const SparseMatrix& L) {
+/// Rounds of Jess and Kees: each eliminates as many independent vertices as it can without fill,
+/// followers after those that they follow.
+std::vector<int> positions_by_rounds(const SparseMatrix& L, const Followers& followers) {
   FilledGraph graph(L);
-  std::vector<int> candidates(L.cols()), next, touched(L.cols(), -1);
+  std::vector<int> candidates(L.cols()), next, touched(L.cols(), -1), awaited(L.cols());
   std::iota(candidates.begin(), candidates.end(), 0);
+  for (const std::vector<int>& list : followers) {
+    for (const int follower : list) ++awaited[follower];
+  }
   for (int round = 0; !candidates.empty(); ++round) {
+    const auto touch = [&](int u) {
+      if (touched[u] != round) next.push_back(u);
+      touched[u] = round;
+    };
     for (const int v : candidates) {
-      if (touched[v] == round || !graph.is_simplicial(v)) continue;
-      graph.eliminate(v, [&](int u) {
-        if (touched[u] != round) next.push_back(u);
-        touched[u] = round;
-      });
+      if (touched[v] == round || awaited[v] > 0 || !graph.is_simplicial(v)) continue;
+      graph.eliminate(v, touch);
+      for (const int follower : followers[v]) {
+        if (--awaited[follower] == 0) touch(follower);
+      }
     }
     candidates.swap(next);
     next.clear();
@@ -73,27 +81,34 @@ std::vector<int> positions_by_rounds(const SparseMatrix& L) {
   return graph.positions();
 }
 
+/// A matrix of this pattern that has factors.
+SparseMatrix dominant(const SparseMatrix& pattern) {
+  SparseMatrix matrix = pattern;
+  matrix.coeffs().setOnes();
+  matrix.diagonal().setConstant(static_cast<double>(pattern.cols()));
+  return matrix;
+}
+
 }  // namespace
 
 template <class Scalar, Tuning kTuning>
 std::vector<int> TunedSimplicial<Scalar, kTuning>::elimination_order(const SparseMatrix& pattern) {
-  SparseMatrix dominant = pattern;
-  dominant.coeffs().setOnes();
-  dominant.diagonal().setConstant(static_cast<double>(pattern.cols()));
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(dominant);  // AMD
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(dominant(pattern));  // AMD
   const auto& amd = factors.permutationP().indices();
   if (kTuning == Tuning::amd) return {amd.begin(), amd.end()};
-  const std::vector<int> positions = positions_by_rounds(factors.matrixL().nestedExpression());
+  const std::vector<int> positions =
+      positions_by_rounds(factors.matrixL().nestedExpression(), Followers(pattern.cols()));
   std::vector<int> position(pattern.cols());
   for (int i = 0; i < pattern.cols(); ++i) position[i] = positions[amd[i]];
   return position;
 }
 
 template <class Scalar, Tuning kTuning>
-std::vector<int> TunedSimplicial<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern) {
-  std::vector<int> identity(pattern.cols());
-  std::iota(identity.begin(), identity.end(), 0);
-  return identity;
+std::vector<int> TunedSimplicial<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern,
+                                                                    const Followers& followers) {
+  using InPlace = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>>;
+  const InPlace factors(dominant(pattern));
+  return positions_by_rounds(factors.matrixL().nestedExpression(), followers);
 }
 
 template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_order(
@@ -101,12 +116,12 @@ template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_orde
 template std::vector<int> TunedSimplicial<double, Tuning::amd>::elimination_order(
     const SparseMatrix&);
 template std::vector<int> TunedSimplicial<double, Tuning::own>::equivalent_order(
-    const SparseMatrix&);
+    const SparseMatrix&, const Followers&);
 template std::vector<int> TunedSimplicial<double, Tuning::amd>::equivalent_order(
-    const SparseMatrix&);
+    const SparseMatrix&, const Followers&);
 template std::vector<int> TunedSimplicial<float, Tuning::own>::elimination_order(
     const SparseMatrix&);
-template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(
-    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(const SparseMatrix&,
+                                                                                const Followers&);
 
 }  // namespace mbs::eigen_sparse

@@ -39,8 +39,9 @@ StepOutcome SparseSimulation<Form>::do_step() {
     phases_.enter(Phase::solve);
     form_.solve();  // Eqs. (4), (12)
     if (correct() <= settings_.tolerance) outcome.status = StepStatus::converged;
-    if (passes_end(outcome)) project();
-    evaluate();
+    const bool last = passes_end(outcome);
+    if (last) project();
+    if (!last || Form::kUpdatesMultipliers) evaluate();
     update_multipliers();
   }
   phases_.enter(Phase::other);

@@ -20,6 +20,9 @@ enum class Definiteness {
   quasi,     ///< Eqs. (12) and (14): pivots of both signs
 };
 
+/// For each unknown those that may be eliminated only after it.
+using Followers = std::vector<std::vector<int>>;
+
 /// Settings of the solvers.
 enum class Tuning {
   own,     ///< what was fastest here, see README.md
@@ -40,8 +43,10 @@ class TunedSimplicial {
   /// AMD's fill, eliminated by rounds unless tuned otherwise: position[i] is where unknown i of
   /// `pattern` (n x n, both triangles) is eliminated.
   [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern);
-  /// An order of the same fill as the present one, in the form that this solver wants.
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern);
+  /// An order of the same fill as the present one, in the form that this solver wants, where
+  /// followers still follow.
+  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
+                                                         const Followers& followers);
 
   /// Symbolic analysis. `matrix` outlives the solver; its values may change, its pattern not.
   TunedSimplicial(const Values& matrix, Definiteness definiteness);
@@ -72,7 +77,8 @@ class TunedSuperlu {
   static constexpr Triangle kTriangle = Triangle::full;
   /// SuperLU's minimum degree ordering on T + T^T, or as tuned, postordered.
   [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern);
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern);
+  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
+                                                         const Followers& followers);
 
   /// Symbolic analysis, and a first factorization, which sizes the storage of L and U: the values
   /// of `matrix` are to be those of a matrix as `definiteness` says.

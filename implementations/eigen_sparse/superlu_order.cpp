@@ -48,7 +48,8 @@ std::vector<int> TunedSuperlu<Scalar, kTuning>::elimination_order(const SparseMa
 }
 
 template <class Scalar, Tuning kTuning>
-std::vector<int> TunedSuperlu<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern) {
+std::vector<int> TunedSuperlu<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern,
+                                                                 const Followers&) {
   std::vector<int> identity(pattern.cols());
   std::iota(identity.begin(), identity.end(), 0);
   return postordered(pattern, std::move(identity));
@@ -65,13 +66,16 @@ template std::vector<int> TunedSuperlu<double, Tuning::colamd>::elimination_orde
     const SparseMatrix&);
 template std::vector<int> TunedSuperlu<double, Tuning::panels>::elimination_order(
     const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::own>::equivalent_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::amd>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::own>::equivalent_order(const SparseMatrix&,
+                                                                              const Followers&);
+template std::vector<int> TunedSuperlu<double, Tuning::amd>::equivalent_order(const SparseMatrix&,
+                                                                              const Followers&);
 template std::vector<int> TunedSuperlu<double, Tuning::colamd>::equivalent_order(
-    const SparseMatrix&);
+    const SparseMatrix&, const Followers&);
 template std::vector<int> TunedSuperlu<double, Tuning::panels>::equivalent_order(
-    const SparseMatrix&);
+    const SparseMatrix&, const Followers&);
 template std::vector<int> TunedSuperlu<float, Tuning::own>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<float, Tuning::own>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<float, Tuning::own>::equivalent_order(const SparseMatrix&,
+                                                                             const Followers&);
 
 }  // namespace mbs::eigen_sparse
