@@ -1,7 +1,9 @@
 # What the page and the front page say, computed from the tables.
+import math
+
 from analysis.accuracy import pairs
 from analysis.accuracy.winners import LAYERS, NOT_TIMED, met
-from analysis.core.text import between, bounded, number
+from analysis.core.text import between, bounded, number, rows_of, step
 from study.core.setting import read_settings
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
@@ -74,8 +76,7 @@ def of_forms(table):
     least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
     said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
     if len(per_pass := ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()):
-        said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
-                    "number of passes.")
+        said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the number of passes.")
     return said
 
 
@@ -87,39 +88,44 @@ def of_precision(table):
     """What factors in single precision (mixed) gain over double, and what single gains."""
     rows = table[(table.kind == pairs.PRECISION) & table.ratio.notna()]
     mixed, said = rows.second.str.contains("mixed"), []
-    for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed])):
-        won, same = pairs.gains(kind), kind[pairs.same_class(kind)]
-        if len(kind) and same.empty:
-            said.append(f"{what}: none of {len(kind)} pairs with double is in the same error class.")
-        elif len(kind):
-            best = same.loc[same.high.idxmin()]
+    for what, kind in [one for one in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed])) if len(one[1])]:
+        same, unknown = kind[pairs.same_class(kind)], kind[kind[["first_status", "second_status"]].isin(pairs.NO_CLASS).any(axis=1)]
+        text = (f"{what}: of {len(kind)} pairs with double {len(same)} are in the same error class, "
+                f"{len(kind) - len(same) - len(unknown)} in another; of {len(unknown)} it is not known. ")
+        text += (f"At least {pairs.GAIN:g} times faster in {len(pairs.gains(kind))} of {len(pairs.shown(kind))} of the same class that have an interval"
+                 if len(pairs.shown(kind)) else "None of the same class has an interval, so nothing is shown" if (kind.high < math.inf).any() else
+                 "All were timed in one process only, so nothing is shown")
+        if len(of := same if len(same) else unknown):
+            best = of.loc[of.ratio.idxmin()]
             ends = (1 / best.high, 1 / best.low) if bounded(best.low, best.high) else (best.low, best.high)
-            words = f"{between(1 / best.ratio, *ends)} of {best.implementation}, {best.second}, n = {best.variables:.0f}"
-            said.append((f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
-                         f"({len(same)} of {len(kind)} pairs are in the same)" if won.empty else
-                         f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(kind)} "
-                         "pairs") + f"; the best speed-up is {words}.")
+            text += (f"; the best speed-up{'' if len(same) else ', at an unknown error class,'} is {between(1 / best.ratio, *ends)} of "
+                     f"{best.implementation}, {best.second}, n = {best.variables:.0f}")
+        said.append(text + ".")
     return said
 
 
 def reuse_rows(table):
-    """For each setting that reuses factors: medians over implementations, size by size."""
-    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna() & table.second_factorizations.notna()]
+    """For each setting that reuses factors: medians over those that were timed, size by size; of `counted` factorizations are known."""
+    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna()]
     rows = rows.assign(saved=1 - rows.second_factorizations / rows.first_factorizations)
     found = rows.groupby(["variables", "first", "second"], sort=False).agg(
-        implementations=("implementation", "nunique"), saved=("saved", "median"),
+        implementations=("implementation", "nunique"), saved=("saved", "median"), counted=("saved", "count"), high=("high", "min"),
         factorizations=("second_factorizations", "median"), passes=("second_passes", "median"),
         usual_passes=("first_passes", "median"), ratio=("ratio", "median"), least=("ratio", "min"),
         error=("second_error", "median"), usual_error=("first_error", "median"))
-    return found.reset_index().to_dict("records")
+    return rows_of(found.reset_index())
 
 
 def of_reuse(table):
     if not (rows := reuse_rows(table)):
         return []
-    largest, quickest = max(rows, key=lambda row: row["saved"]), min(rows, key=lambda row: row["ratio"])
-    said = (f"Of the settings that reuse factors {largest['second']} saves the most factorizations, "
-            f"{number(100 * largest['saved'])} % with n = {largest['variables']:.0f}")
-    said += (f"; the quickest, {quickest['second']} with n = {quickest['variables']:.0f}, takes {number(quickest['ratio'], 2)} of "
-             "the time of a step without." if quickest["ratio"] < 1 else "; nowhere is a step faster for it.")
-    return [said]
+    quickest, said = min(rows, key=lambda row: row["ratio"]), f"Reuse of factors, in steps of {step(pairs.STEP)}: "
+    if counted := [row for row in rows if row["counted"]]:
+        most = max(counted, key=lambda row: row["saved"])
+        said += (f"where factorizations are known, {most['second']} saves the most of them, {number(100 * most['saved'])} % with n = "
+                 f"{most['variables']:.0f} (median of {most['counted']} implementations), where a step takes {number(most['ratio'], 2)} times "
+                 f"that of {most['first']}; ")
+    said += (f"{quickest['second']} with n = {quickest['variables']:.0f} is the quickest: in the median over {quickest['implementations']} "
+             f"implementations its step takes {number(quickest['ratio'], 2)} times that of {quickest['first']}")
+    return [said + ("" if bounded(0, quickest["high"]) else ", timed in one process")
+            + (", at an error that is not known." if quickest["error"] is None else ".")]

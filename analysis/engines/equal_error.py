@@ -9,6 +9,7 @@ LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, wher
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
 CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
 SIDES = {"chains": "our code for chains", "fronts": "our general code", "library": "the fastest library", "paper": "the paper's scheme"}
+NOT_MEASURED, UNSERVED, UNREACHED = "not measured", "not served", "not reached"  # what reasons begin with
 NEAR = 1.3   # untimed times are this uncertain
 MOST = 2     # candidates of a side for one run of an engine
 
@@ -20,6 +21,17 @@ def of_side(ours, side, own):
     if side == "library":
         return ours[~ours.name.isin(own)]
     return ours[ours.name == {"chains": CHAINS, "fronts": FRONTS}[side]]
+
+
+def compared(table, side):
+    """Comparisons of engines as they are packaged with a side of ours."""
+    return table[(table.side == side) & table.ratio.notna() & ~table.engine.str.endswith(NATIVE)]
+
+
+def lacking(rows):
+    """["1 of 5 errors not reached"]: why comparisons have no ratio, and how many."""
+    reasons = rows.reason[rows.ratio.isna()].str.replace(":.*", "", regex=True)
+    return [f"{count} of {len(rows)} errors {why}" for why, count in reasons.value_counts().items()]
 
 
 def candidates(engines, ours, own):
@@ -104,12 +116,15 @@ def _row(subject, engine, limit, best, side, mine, every, paired):
 
 
 def unreached(rows, error):
-    """Why no run of a side meets `error`."""
+    """Why no run of a side meets `error`: a word of those above and, after a colon, more. A curve that the budget cut might have met it."""
     if rows.empty:
         return "none of it takes part"
-    done = finished(rows)
-    if done.empty:
-        return "lost: " + ", ".join(f"{count} {status}" for status, count in rows.status.value_counts().items())
+    curves = rows.name + rows.setting
+    rows = rows[~curves.isin(curves[rows.status == "unsupported"])]
+    done, cut = finished(rows), (rows.status == "dropped").sum()
+    least = f"its smallest error is {done.error.min():.2g} m" if len(done) else "it lost the motion" if cut < len(rows) else "no run was made"
+    if rows.empty:
+        return f"{UNSERVED}: no setting of it can simulate this"
     if (done.error <= error).any():
-        return "not timed in the rounds"
-    return f"its smallest error is {done.error.min():.2g} m"
+        return f"{NOT_MEASURED}: not timed in the rounds"
+    return f"{NOT_MEASURED}: the budget cut {cut} of its curves, {least}" if cut else f"{UNREACHED}: {least}"

@@ -17,8 +17,8 @@ def row(record):
     engine = PurePath(record.cell["program"]).name.startswith("engine_")
     error = subject.error(record, engine) if status in FINISHED and record.role != ROUND else None
     error = math.nan if error is None else max(error, FLOOR)
-    if status in FINISHED and record.role != ROUND and not math.isfinite(error):
-        status, reason = "diverged", "its position error is not finite"
+    if status in FINISHED and record.role != ROUND and not error <= subject.worst:  # as the programs judge the four-bar
+        status, reason = "diverged", f"position error {error:.2e} m (allowed {subject.worst:.1g})"
     found, side = (_engine if engine else _ours)(record), ENGINE if engine else OURS
     return found | {"subject": subject.name, "status": status, "reason": reason, "error": error, "round": record.cell["number"], "side": side,
                     "key": "|".join([side, *(f"{found[name]}" for name in ("name", "setting", "over", "value"))]), "record": record.name}

@@ -1,10 +1,15 @@
 # What the front page says of the engines, computed from the tables.
+import math
+
 from analysis.core.outcomes import FINISHED, finished
 from analysis.core.text import between, number, span
-from analysis.engines.equal_error import SIDES
+from analysis.engines.equal_error import SIDES, compared, lacking
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import ANDREWS, subject_of
+
+CURVE = ["subject", "setting", "over"]
+TOO_LONG = ("predicted to take", "the run before it did not end")  # how study/core/curves.py says that the limit of a run cut a curve
 
 
 def answers(tables, view):
@@ -17,52 +22,58 @@ def answers(tables, view):
 
 
 def of_side(table, side):
-    """A sentence on one side of ours: how often it is faster, by how much, and what it does not reach."""
-    rows = table[(table.side == side) & ~table.engine.str.endswith(NATIVE)]
-    timed = rows[rows.ratio.notna()]
+    """A sentence on one side of ours: how often it is faster, by how much, and why it was not compared."""
+    rows, timed = table[(table.side == side) & ~table.engine.str.endswith(NATIVE)], compared(table, side)
     if rows.empty or (rows.reason == "none of it takes part").all():
         return ""
-    text = (f"{SIDES[side].capitalize()}: shown to be faster than the engine in {(timed.low > 1).sum()} of {len(rows)} "
-            "comparisons at equal error")
+    text, single = f"{SIDES[side].capitalize()}: timed at {len(timed)} of {len(rows)} errors that engines reach", (timed.high == math.inf).sum()
     if len(timed):
-        worst = timed.loc[timed.ratio.idxmin()]
+        worst, single = timed.loc[timed.ratio.idxmin()], f" ({single} have a single round, so nothing is shown)" if single else ""
         where = f"; {title(worst.engine)}, {subject_of(worst.subject).title}, {number(worst.engine_error, 2)} m"
-        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least "
-                 f"{between(worst.ratio, worst.low, worst.high, 2, where)}")
-    if len(timed) < len(rows):
-        text += f"; it does not reach {len(rows) - len(timed)} of these errors"
-    return text + "."
+        text += (f", shown to be faster in {(timed.low > 1).sum()} of these{single}; the engines take {medians(timed)} times as long in their "
+                 f"medians, at the least {between(worst.ratio, worst.low, worst.high, 2, where)}")
+    return "; ".join([text, *lacking(rows)]) + "."
+
+
+def medians(rows):
+    """"4.5 to 190": over engines, of each its median ratio."""
+    return span(rows.groupby("engine").ratio.median(), 2)
 
 
 def of_andrews(table):
     """A sentence for each solver that simulated Andrews' mechanism: its time over that of each side of ours."""
     for engine, rows in table[table.subject == ANDREWS].groupby("engine", sort=False):
-        if compared := [text for side in SIDES for text in [_times(rows[rows.side == side], SIDES[side])] if text]:
-            errors = rows.engine_error
-            yield (f"{title(engine)} on Andrews' mechanism, at its errors from {number(errors.max(), 2)} to "
-                   f"{number(errors.min(), 2)} m, takes " + "; ".join(compared) + ".")
-
-
-def _times(rows, side):
-    """"0.4 to 2 times as long as SIDE, which does not reach 1 of 5 errors"; "" if SIDE reaches none."""
-    timed = rows[rows.ratio.notna()]
-    if timed.empty:
-        return ""
-    missed = len(rows) - len(timed)
-    return f"{span(timed.ratio, 2)} times as long as {side}" + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
+        said = [f"{span(mine.ratio.dropna(), 2)} times as long as {SIDES[side]}{f' ({lacks})' if lacks else ''}"
+                for side, mine in rows.groupby("side", sort=False) for lacks in [", ".join(lacking(mine))] if mine.ratio.notna().any()]
+        if said:
+            least, most = (number(one, 2) for one in (rows.engine_error.min(), rows.engine_error.max()))
+            yield f"{title(engine)} on Andrews' mechanism, at its errors from {most} to {least} m, takes {'; '.join(said)}."
 
 
 def of_native(native):
     """How much it matters that packages are built for any processor; "" if it was not measured."""
     if native.empty:
         return ""
-    return (f"{title(native.engine.iloc[0])} from Debian takes {number(native.ratio.median(), 3)} times as long as built "
-            f"with our flags (median of {len(native)} runs, {number(native.ratio.min(), 3)} to {number(native.ratio.max(), 3)}).")
+    return (f"How much the packages' flags matter is known of {title(native.engine.iloc[0])} alone: from Debian it takes "
+            f"{number(native.ratio.median(), 3)} times as long as built with our flags (median of {len(native)} runs, {span(native.ratio)}).")
 
 
 def value(over, amount):
     """"step 5 ms" or "accuracy 10⁻⁶"."""
     return f"step {number(1e3 * amount)} ms" if over == "step" else f"accuracy {number(amount)}"
+
+
+def cut_curves(rows):
+    """How many values each curve of engines has that the budget or the limit of a run cut."""
+    curves = rows.assign(made=~rows.status.isin(NOT_MADE), cut=(rows.status == "dropped") | rows.reason.str.startswith(TOO_LONG)).groupby(CURVE)
+    return curves.made.sum()[curves.cut.any()]
+
+
+def absent(rows):
+    """Why an engine is in no comparison of a subject. `rows`: its runs there."""
+    if rows.empty or len(finished(rows)):
+        return "takes no part" if rows.empty else "not timed in the rounds"
+    return f"cut after {span(cut)} value{'' if cut.max() == 1 else 's'}" if len(cut := cut_curves(rows)) else "reaches none"
 
 
 def of_engines(engines):
@@ -76,5 +87,7 @@ def of_engines(engines):
         done = finished(made)
         best = "none finished" if done.empty else (
             f"{number(done.error.min(), 2)} m is the smallest error ({subject_of(done.loc[done.error.idxmin()].subject).title})")
+        if len(cut := cut_curves(rows)):
+            best += f", {len(cut)} of its {rows.groupby(CURVE).ngroups} curves were cut by the budget or the time limit"
         version = next((one for one in made.version if one), "")
         yield f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}."

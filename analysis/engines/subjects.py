@@ -34,6 +34,7 @@ class Subject:
     points: str = ""     # outputs that are compared where they do not
     judged: float = 1e-2  # s: errors are evaluated so often, as the engines' programs do
     steps: tuple = (2e-2, 1e-5)  # s, the longest and the shortest of ours
+    worst: float = 0.1   # m, a tenth of its shortest rod: who is farther off has lost the motion
 
     place = property(lambda self: (self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops))  # in tables and figures
 
@@ -54,7 +55,7 @@ class Subject:
 OTHERS = {one.name: one for one in (
     Subject(PENDULUM, "double pendulum", "study/engines/double_pendulum.json", PENDULUM_S, ("--pendulum",), points="BC"),
     Subject(ANDREWS, "Andrews' mechanism", ANDREWS_SCENE, andrews.DURATION_S, ("--scene", ANDREWS_SCENE), points="EPSU",
-            judged=andrews.DURATION_S / 300, steps=(4e-4, 1e-7)))}
+            judged=andrews.DURATION_S / 300, steps=(4e-4, 1e-7), worst=float(min(andrews.LENGTHS)) / 10))}
 
 
 def subject_of(name):

@@ -1,6 +1,7 @@
 # Points, winners, pairs, figures and page of accuracy on records of a model, and on small tables of every outcome.
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import jinja2
 import matplotlib.pyplot as plt
@@ -15,6 +16,7 @@ from analysis.core.style import Look
 from analysis.core.text import between, ends, number
 from study.accuracy import plan
 from study.core.setting import read_settings
+from study.tools.paper import claims
 from study.tests.accuracy_fakes import SETTINGS, Lab, view
 
 HERE = Path(tables.__file__).parent
@@ -145,6 +147,16 @@ def test_who_was_slower_in_a_look_has_lost_and_who_was_not_reached_leaves_it_ope
     assert unknown.implementation == "not timed"
 
 
+@pytest.mark.parametrize("coarse, error, required, settled", [(1e-3, 1e-3, 1e-4, False), (1e-3, 1e-3, 1e-2, True), (1e-5, 1e-3, 1e-4, True)])
+def test_a_curve_that_the_budget_cut_above_the_error_leaves_it_open(coarse, error, required, settled):
+    """At `error`; with a time at its last value that the fastest takes at a step of `coarse`."""
+    runs = [run(error=1e-5, step=coarse), run("b/y", step=2e-4, error=error) | {"time": 0.05},
+            run("b/y", step=1e-4, error=numpy.nan, status="dropped") | {"time": numpy.nan}]
+    runs = runs if coarse > 1e-4 else [runs[0], runs[1] | {"time": 2.0}, runs[2]]
+    best, _ = winner(runs, rounds("a/x", (100, 100, 100) if coarse > 1e-4 else (10, 10, 10), step=coarse), required)
+    assert best.implementation == "a/x" and (best.decided, best.settled) == (settled, settled)
+
+
 def test_libraries_are_ranked_as_if_own_code_were_not_there():
     libraries, everyone = winner([run(), run("own/code")], rounds("a/x", (10, 10, 10)) + rounds("own/code", (2, 2, 2)))
     assert (libraries.implementation, everyone.implementation, everyone.second) == ("a/x", "own/code", "a/x")
@@ -154,8 +166,7 @@ def test_pairs_compare_settings_round_by_round_in_the_same_class():
     def table(levels, errors=(1e-4, 1e-4), status="ok"):
         rows = rounds("a/x", [10 * one for one in (1.0, 2.0, 1.5)], role="pair", step=pairs.STEP)
         rows += rounds("a/x", levels, role="pair", step=pairs.STEP, setting="mixed")
-        made = pandas.DataFrame([run(step=pairs.STEP, error=errors[0]),
-                                 run(setting="mixed", step=pairs.STEP, error=errors[1], status=status)])
+        made = pandas.DataFrame([run(step=pairs.STEP, error=errors[0]), run(setting="mixed", step=pairs.STEP, error=errors[1], status=status)])
         return pairs.table("s", made, pandas.DataFrame(rows))
     [row] = table((5, 10, 7.5)).to_dict("records")
     assert row["ratio"] == pytest.approx(0.5) and row["low"] == pytest.approx(row["high"]) and row["processes"] == 3
@@ -169,15 +180,20 @@ def test_pairs_compare_settings_round_by_round_in_the_same_class():
 def test_mixed_precision_says_whether_it_gains(found):
     def row(name, ratio, classes=(1e-3, 1e-3), second="mixed"):
         return {"kind": pairs.PRECISION, "first": "default", "second": second, "implementation": name, "ratio": ratio,
-                "low": 0.95 * ratio, "high": 1.05 * ratio, "variables": 22, "first_class": classes[0], "second_class": classes[1]}
-    table = pandas.DataFrame([row("one/a", 0.5), row("two/a", 0.5, (1e-3, 1e-2)), row("three/a", 0.82),
-                              row("one/a", 0.5, (None, None), "single")])
+                "low": 0.95 * ratio, "high": 1.05 * ratio, "variables": 22, "first_class": classes[0], "second_class": classes[1],
+                "first_status": "ok", "second_status": "ok" if classes[1] else "dropped"}
+    table = pandas.DataFrame([row("one/a", 0.5), row("two/a", 0.5, (1e-3, 1e-2)), row("three/a", 0.82), row("one/a", 0.5, (None, None), "single")])
     mixed, single = sentences.of_precision(table)
-    assert "at least 1.2 times faster than double at the same error class in 1 of 3 pairs" in mixed
-    assert "one/a, mixed, n = 22" in mixed
-    assert single == "Single precision: none of 1 pairs with double is in the same error class."
+    assert "of 3 pairs with double 2 are in the same error class, 1 in another; of 0 it is not known" in mixed
+    assert "At least 1.2 times faster in 1 of 2 of the same class" in mixed and "one/a, mixed, n = 22" in mixed
+    assert single.startswith("Single precision: of 1 pairs with double 0 are in the same error class, 0 in another; of 1 it is not known. None of")
     [nowhere] = sentences.of_precision(table.iloc[1:3])
-    assert "nowhere" in nowhere and "1 of 2 pairs are in the same" in nowhere and "three/a" in nowhere
+    assert "At least 1.2 times faster in 0 of 1" in nowhere and "three/a" in nowhere
+    [alone] = sentences.of_precision(table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf))  # the faster one is not the first
+    assert "All were timed in one process only, so nothing is shown; the best speed-up is about 2 (not bounded) of one/a" in alone
+    claim = SimpleNamespace(tables=lambda part: {"pairs": table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf)})
+    assert claims._mixed(claim)[0] is None and claims._mixed(SimpleNamespace(tables=lambda part: {"pairs": table}))[0] is False
+    assert claims._mixed(SimpleNamespace(tables=lambda part: {"pairs": table.iloc[1:2]}))[0] is None  # of another class
 
 
 def test_the_fronts_are_those_of_their_layer(found):
@@ -211,16 +227,14 @@ def test_the_figures_show_what_won_and_name_few(found):
 
 
 def test_a_subject_that_nobody_finishes_and_cells_of_nobody_can_be_drawn():
-    lab = Lab("four-bar-10", lost={name: "diverged" for name in ("lib_a/fast", "lib_b/even", "lib_a/slow", "own/code",
-                                                                 "lib_dense/llt")})
+    lab = Lab("four-bar-10", lost={name: "diverged" for name in ("lib_a/fast", "lib_b/even", "lib_a/slow", "own/code", "lib_dense/llt")})
     plan.run(lab, "four-bar-10")
     made = tables.build(list(lab.records.values()), view(lab))
     columns = schema.of_part("accuracy")
     made = {name: schema.conform(made[name], known, name) for name, known in columns.items()}
     for figure in figures.draw(made, view(lab)).values():
         plt.close(figure)
-    assert sentences.answers(made, view(lab)) == [{"text": "Not measured: nobody reached a required error with a time.",
-                                                   "anchor": ""}]
+    assert sentences.answers(made, view(lab)) == [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
     [case] = sentences.cases(made, view(lab))
     assert case["take"] == "what `study/advise` names for your scene" and "nobody" in render(made, view(lab))
 
@@ -239,7 +253,12 @@ def test_the_answers_name_both_layers_and_what_reuse_saves(found):
     said = [one["text"] for one in sentences.answers(made, seen)]
     assert said[0].startswith("Of the libraries lib_a/fast is fastest for 2 of 2 required errors")
     assert said[1].startswith("Of all, code without a library included, own/code is fastest")
-    assert any("every-step saves the most factorizations, 50 %" in one for one in said)
+    assert any("in steps of 1.25 ms: where factorizations are known, every-step saves the most of them, 50 %" in one for one in said)
+    lost = made["pairs"].assign(second_factorizations=numpy.where(made["pairs"].variables > 50, numpy.nan, made["pairs"].second_factorizations),
+                                ratio=numpy.where(made["pairs"].variables > 50, 0.5, 1.1))
+    [text] = sentences.of_reuse(lost)
+    assert re.search(r"n = 82 is the quickest: in the median over \d implementations its step takes 0.5 times that of default", text)
+    assert "<td class=\"n\">–</td>" in render(made | {"pairs": lost}, seen)
     [case] = sentences.cases(made, seen)
     assert "an error of 0.001 m: lib_a/fast, `--scheme rattle`, step 20 ms; " in case["take"]
     assert {one["anchor"] for one in sentences.answers(made, seen)} <= set(re.findall('id="([^"]+)"', render(made, seen)))

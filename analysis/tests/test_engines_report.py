@@ -1,4 +1,5 @@
 # Rows, times at equal error, figures and page of the engines on synthetic records.
+import dataclasses
 from functools import partial
 from types import SimpleNamespace
 
@@ -12,12 +13,12 @@ from analysis.engines import andrews, equal_error, figures, page, sentences, tab
 from analysis.engines.runs import row
 from analysis.engines.subjects import FLOOR, PENDULUM_S, positions, subject_of
 from analysis.tests.tables_of import tables_of
+from study.tools.paper import claims
 
 LONG, SHORT = "four-bar-2", "four-bar-2-regular"
 VIEW = SimpleNamespace(registry=Registry({"implementations": [
     {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
-    {"folder": "compiled_ldl", "available": True, "library": "none",
-     "variants": [{"name": equal_error.CHAINS}, {"name": equal_error.FRONTS}]}]}))
+    {"folder": "compiled_ldl", "available": True, "library": "none", "variants": [{"name": equal_error.CHAINS}, {"name": equal_error.FRONTS}]}]}))
 
 
 def theirs(engine, step, time, error, status="ok", subject=LONG, role="engine", number=0, options=(), native=False, **more):
@@ -42,15 +43,19 @@ def rounds(runs, factor=1.0):
             for number, slower in ((1, 1.0), (2, 1.1)) for make, arguments, more in runs]
 
 
+def dropped(engine, step):
+    return dataclasses.replace(theirs(engine, step, 0.1, 0.3), status="dropped", reason="the budget", output={})
+
+
 PAPER = {"words": ("--scheme", "penalty", "--penalty", "1e8")}
 RUNS = [(theirs, ("ode", 1e-2, 1.0, 5e-2), {}), (theirs, ("ode", 5e-3, 2.0, 6e-3), {}), (theirs, ("ode", 1e-3, 9.0, 4e-6), {}),
         (theirs, ("bullet", 1e-2, 3.0, 2e-4), {"first_complaint": "LCP failed", "options": ("model=bodies",)}),
-        (theirs, ("ode", 1e-2, 1.0, 5e-3), {"subject": SHORT}),
-        (theirs, ("ode", 1e-2, 0.5, 5e-2), {"native": True}),
+        (theirs, ("ode", 1e-2, 1.0, 5e-3), {"subject": SHORT}), (theirs, ("ode", 1e-2, 0.5, 5e-2), {"native": True}),
         (mine, (equal_error.CHAINS, 1e-2, 0.1, 2e-2), {}), (mine, (equal_error.CHAINS, 5e-3, 0.2, 1e-4), {}),
         (mine, (equal_error.FRONTS, 5e-3, 0.4, 1e-4), {}), (mine, ("lib/a", 1e-2, 2.0, 3e-2), {}),
         (mine, ("lib/a", 5e-3, 3.0, 8e-3), PAPER), (mine, (equal_error.CHAINS, 1e-2, 0.5, 4e-3), {"subject": SHORT})]
-LOST = [theirs("ode", 2e-2, 0.1, 0.3, "wrong-branch"), mine("lib/a", 1e-2, 0.001, 9.0, "diverged", subject=SHORT)]
+LOST = [theirs("ode", 2e-2, 0.1, 0.3, "wrong-branch"), theirs("dart", 1e-2, 0.1, 0.3, "diverged"), dropped("dart", 5e-3),
+        mine("lib/a", 1e-2, 0.001, 9.0, "diverged", subject=SHORT)]
 ABSENT = Record(f"{LONG}/engine/x", {"program": "study/engines/engine_simbody", "role": "engine", "number": 0, "settings": []},
                 "unavailable", "libsimbody-dev is not installed (study/setup --engines)", 0.0, [], {})
 
@@ -65,8 +70,7 @@ def found():
 
 def one(found, engine, limit, side, subject=LONG):
     table = found["equal_error"]
-    [row] = table[(table.subject == subject) & (table.engine == engine) & (table.limit == limit)
-                  & (table.side == side)].to_dict("records")
+    [row] = table[(table.subject == subject) & (table.engine == engine) & (table.limit == limit) & (table.side == side)].to_dict("records")
     return row
 
 
@@ -93,11 +97,14 @@ def test_ours_is_the_fastest_of_a_side_at_the_engine_s_own_error_or_a_smaller_on
 
 
 def test_what_ours_does_not_reach_keeps_its_row_and_its_reason(found):
-    assert one(found, "ode", 1e-5, "chains")["reason"] == "its smallest error is 0.0001 m"
+    assert one(found, "ode", 1e-5, "chains")["reason"] == "not reached: its smallest error is 0.0001 m"
     assert numpy.isnan(one(found, "ode", 1e-5, "chains")["ratio"])
-    assert one(found, "ode", 1e-2, "library", SHORT)["reason"] == "lost: 1 diverged"
+    assert one(found, "ode", 1e-2, "library", SHORT)["reason"] == "not reached: it lost the motion"
     assert one(found, "ode", 1e-2, "paper", SHORT)["reason"] == "none of it takes part"
-    assert one(found, "ode", 1e-2, "library")["reason"] == "its smallest error is 0.008 m"
+    ours = tables.frame([row(make(*arguments, **more)) for make, arguments, more in RUNS[6:8]])
+    assert equal_error.unreached(ours.assign(status=["ok", "dropped"]), 1e-3).startswith("not measured: the budget cut 1 of its curves")
+    assert equal_error.unreached(ours.assign(status=["unsupported", "dropped"]), 1e-3).startswith("not served")
+    assert one(found, "ode", 1e-2, "library")["reason"] == "not reached: its smallest error is 0.008 m"
 
 
 def test_the_build_with_our_flags_is_an_engine_of_its_own_and_compared_with_the_package(found):
@@ -123,24 +130,32 @@ def test_figures_page_and_answers(found):
     plt.close("all")
     known = page.context(found, VIEW)
     assert known["measured"] and known["subjects"] == {LONG: "N = 2", SHORT: "N = 2, first 0.6 s"}
-    assert known["summaries"]["library"][LONG]["ode"] == pytest.approx({"low": 0.5, "high": 0.5, "errors": 3, "reached": 1})
+    assert known["summaries"]["library"][LONG]["ode"] == {
+        "low": 0.5, "high": 0.5, "timed": 1, "lacking": ["2 of 3 errors not reached"]}
+    assert (known["summaries"]["library"][SHORT]["bullet"], known["summaries"]["library"][LONG]["dart"]) == ("takes no part", "cut after 1 value")
     assert [(row["side"], row["engine"], round(row["ratio"], 3)) for row in known["behind"]][:2] == [
         ("paper", "ode+native", 0.167), ("library", "ode+native", 0.25)]
-    assert ("chains", LONG, "its smallest error is 0.0001 m", [4e-6]) in known["unreached"]
+    assert ("chains", LONG, "not reached: its smallest error is 0.0001 m", [4e-6]) in known["unreached"]
     assert any("Simbody: left out, libsimbody-dev is not installed" in text for text in known["says"])
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert texts[0].startswith("Our code for chains: shown to be faster than the engine in 4 of 5 comparisons at equal error")
-    assert "it does not reach 1 of these errors" in texts[0]
+    assert texts[0].startswith("Our code for chains: timed at 4 of 5 errors that engines reach, shown to be faster in 4 of these; ")
+    assert texts[0].endswith("; 1 of 5 errors not reached.") and "Open Dynamics Engine alone" in texts[-1]
+    assert "1 of its 1 curves were cut" in next(text for text in known["says"] if text.startswith("DART"))
+    single = found["equal_error"].assign(low=0.0, high=numpy.inf)
+    assert "shown to be faster in 0 of these (4 have a single round" in sentences.of_side(single, "chains")
+    alone, both = (claims._engines(SimpleNamespace(tables=lambda _, table=table: {"equal_error": table})) for table in (single, found["equal_error"]))
+    assert alone[0] is None and both[0] is False and "here 1 of 1" in both[1]  # without those of the build with our flags
 
 
 def test_a_sentence_on_andrews_mechanism():
-    runs = [(theirs, ("ida", 1e-4, 4.0, 1e-3), {"subject": "andrews"}), (theirs, ("ida", 1e-5, 9.0, 1e-6), {"subject": "andrews"}),
+    runs = [(theirs, ("ida", 1e-4, 4.0, 5e-4), {"subject": "andrews"}), (theirs, ("ida", 1e-3, 0.1, 1e-3), {"subject": "andrews"}),
+            (theirs, ("ida", 1e-5, 9.0, 1e-6), {"subject": "andrews"}),
             (mine, ("lib/a", 1e-4, 2.0, 1e-4), {"subject": "andrews"}), (mine, (equal_error.FRONTS, 1e-4, 1.0, 1e-7), {"subject": "andrews"})]
     motion = numpy.moveaxis(andrews.positions(numpy.array([0.0, 0.03])), 2, 0)  # time, point, axis
     table = made(*(record for make, arguments, more in runs for record in [known(make(*arguments, **more), motion)]), *rounds(runs))
     [text] = sentences.of_andrews(table["equal_error"])
-    assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.001 to 10⁻⁶ m, takes 4 to 9 times as long as our "
-                    "general code; 2 times as long as the fastest library, which does not reach 1 of 2 of them.")
+    assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.0005 to 10⁻⁶ m, takes 4 to 9 times as long as our "
+                    "general code; 2 times as long as the fastest library (1 of 2 errors not reached).")
 
 
 def known(record, motion):
@@ -155,8 +170,7 @@ def known(record, motion):
 
 def test_without_engines_the_page_says_what_is_missing():
     found = made(ABSENT)
-    assert [one["text"] for one in sentences.answers(found, VIEW)] == [
-        "Not measured: libsimbody-dev is not installed (study/setup --engines)."]
+    assert [one["text"] for one in sentences.answers(found, VIEW)] == ["Not measured: libsimbody-dev is not installed (study/setup --engines)."]
     known = page.context(found, VIEW)
     assert not known["measured"] and known["setting_up"] == "study/setup --engines"
     assert set(figures.draw(found, VIEW)) == {"singular", "regular"}
@@ -170,8 +184,7 @@ def test_the_motion_of_the_double_pendulum():
     assert numpy.allclose(numpy.hypot(*first), 1) and numpy.allclose(numpy.hypot(*(second - first)), 1.5)
     velocities = [numpy.gradient(one, times, axis=1, edge_order=2) for one in (first, second)]
     energy = 0.0  # of thin rods: m/6 (va va + va vb + vb vb) between ends a and b, and m g y of the middle
-    for mass, (a, va), (b, vb) in ((1.0, (0 * first, 0 * first), (first, velocities[0])),
-                                   (1.5, (first, velocities[0]), (second, velocities[1]))):
+    for mass, (a, va), (b, vb) in ((1.0, (0 * first, 0 * first), (first, velocities[0])), (1.5, (first, velocities[0]), (second, velocities[1]))):
         energy += mass / 6 * (va * va + va * vb + vb * vb).sum(0) + mass * 9.81 * (a[1] + b[1]) / 2
     assert numpy.ptp(energy[2:-2]) < 5e-3 * 20  # differences of positions give the velocities
     assert numpy.hypot(*(positions(times) - positions(times, 2e-3)).swapaxes(0, 1)).max() < FLOOR

@@ -250,8 +250,7 @@ def test_every_setting_means_something_to_its_program(engine):
                                "--json"], capture_output=True, text=True)
         output = json.loads(done.stdout)
         assert output["engine"] == engine and output["status"] in ("ok", "degraded", "diverged"), output
-        cell = plan.Cell("", program=f"{plan.PROGRAMS}/engine_{engine}", role=ENGINE,
-                         settings=setting.words(setting.values[2])).settled()
+        cell = plan.Cell("", program=f"{plan.PROGRAMS}/engine_{engine}", role=ENGINE, settings=setting.words(setting.values[2])).settled()
         found = row(Record("four-bar-1/engine/x", cell.document(), "done", "", 0.1, [], {}, output))
         assert found["value"] == setting.values[2] and found["time"] > 0
 
@@ -260,8 +259,7 @@ def test_every_setting_means_something_to_its_program(engine):
 def test_programs_refuse_bad_input(engine):
     over = read_list()[engine][0].over
     bad = [(["--loops", "0"], "--loops"), (["--loops", "1", "--setting", "stp=1"], "stp means nothing"),
-           (["--loops", "1", "--setting", f"{over}=fast"], "must be a number"), (["--loops", "1", "--pendulum"], "excludes"),
-           ([], "is required")]
+           (["--loops", "1", "--setting", f"{over}=fast"], "must be a number"), (["--loops", "1", "--pendulum"], "excludes"), ([], "is required")]
     solver = [(["--scene", "none.json"], "none.json"), (["--scene", "harness/scenes/problems/a04_bricard.json"], "three dimensions"),
               (["--scene", "harness/scenes/problems/half_car.json"], "drivers"), (["--scene", "x", "--pendulum"], "excludes")]
     for words, what in bad + (solver if engine in SOLVERS else [(["--scene", "x"], "--scene")]):
@@ -272,8 +270,7 @@ def test_programs_refuse_bad_input(engine):
 def error(name, form, accuracy):
     """Of a run of IDA; its program reads scenes relative to the repository."""
     subject = plan.subject_of(name)
-    words = (*map(str, subject.words), "--duration", f"{subject.duration:g}", "--setting", f"form={form}",
-             f"accuracy={accuracy}", "--json")
+    words = (*map(str, subject.words), "--duration", f"{subject.duration:g}", "--setting", f"form={form}", f"accuracy={accuracy}", "--json")
     done = subprocess.run([program("ida"), *words], capture_output=True, text=True, cwd=ROOT)
     output = json.loads(done.stdout)
     assert output["status"] in ("ok", "degraded"), output

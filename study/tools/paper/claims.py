@@ -8,6 +8,7 @@ from scipy.stats import gmean
 
 from analysis.accuracy import pairs
 from analysis.core.text import between, number, span
+from analysis.engines.equal_error import compared
 from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
@@ -23,8 +24,7 @@ Claim = namedtuple("Claim", "name text part where found merged", defaults=(False
 
 
 def claims():
-    return (
-        Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", _agree),
+    return (Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", _agree),
         Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", _sparse),
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
@@ -140,10 +140,9 @@ def _of_2008(holds, text):
 
 
 def _mixed(known):
-    rows = known.tables("accuracy")["pairs"].loc[lambda rows: (rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
-    known_rows = rows[rows.high < math.inf]  # of a single layout nothing can be shown
-    return _counted(known_rows.index.isin(pairs.gains(known_rows).index), lambda count, _: count == 0,
-                    "none; here {count} of {total} with an interval")
+    rows = pairs.shown(known.tables("accuracy")["pairs"].loc[lambda rows: (rows.kind == pairs.PRECISION) & rows.second.str.contains("mixed")])
+    return _counted(rows.index.isin(pairs.gains(rows).index), lambda count, _: count == 0,
+                    "none; here {count} of {total} of the same class that have an interval")
 
 
 def _compiled(known):
@@ -160,8 +159,8 @@ def _batches(known):
 
 
 def _engines(known):
-    rows = known.tables("engines")["equal_error"].loc[lambda rows: (rows.side == "library") & rows.ratio.notna()]
-    return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons")
+    rows = compared(known.tables("engines")["equal_error"], "library").loc[lambda rows: rows.high < math.inf]
+    return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons that have an interval")
 
 
 def _quiet(known):

@@ -10,6 +10,7 @@ from scipy.stats import gmean
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
 from analysis.core.text import number, span
+from analysis.engines.sentences import compared, medians
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
@@ -102,8 +103,7 @@ def _design(known):
     timed, table = tried[tried.status == "ok"], "tuning/alternatives"
     folders = {name.partition("/")[0] for name in registry.libraries}
     return {"libraries": Number(str(len(registry.libraries)), file), "folders": Number(str(len(folders)), file),
-            "own": Number(str(len(registry.own)), file),
-            "equal": Number(percent(timing.EQUIVALENT - 1), "analysis/core/timing.py"),
+            "own": Number(str(len(registry.own)), file), "equal": Number(percent(timing.EQUIVALENT - 1), "analysis/core/timing.py"),
             "confidence": Number(percent(timing.CONFIDENCE), "analysis/core/timing.py"),
             "processes": of_rows(lambda rows: span(rows.processes), "families/scenes", scenes[scenes.processes.notna()]),
             "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
@@ -300,7 +300,7 @@ def _latency(known):
 
 def _own(known):
     ahead = fastest_own(known.tables("families")["scenes"], known.registry)
-    equal = known.tables("engines")["equal_error"].loc[lambda rows: (rows.side == "library") & rows.ratio.notna()]
+    equal = compared(known.tables("engines")["equal_error"], "library")
     batches = known.tables("limit")["batches"].loc[lambda rows: rows.status == "ok"]
     found = each("families/scenes", ahead, mechanisms=len(ahead), least=number(1 / ahead.to_rival.max()), most=number(1 / ahead.to_rival.min()),
                  middle=number(1 / ahead.to_rival.median()), names=shares(ahead.implementation.value_counts()))
@@ -309,7 +309,7 @@ def _own(known):
         found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine),
                   f"{name}_gain": of_rows(lambda rows: span(rows.gain), "limit/batches", mine)}
     return found | {"engines": count(equal, equal, "engines/equal_error"), "engines_ahead": count(equal[equal.low > 1], equal, "engines/equal_error"),
-                    "engines_middle": of_rows(number(equal.ratio.median(), 2), "engines/equal_error", equal)}
+                    "engines_middle": of_rows(medians, "engines/equal_error", equal)}
 
 
 def _limits(known):

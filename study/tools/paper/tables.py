@@ -7,7 +7,7 @@ import pandas
 from scipy.stats import gmean
 
 from analysis.core.text import between, bounded, ends, number
-from analysis.engines.equal_error import SIDES
+from analysis.engines.equal_error import SIDES, lacking
 from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
 from analysis.families import bounds
@@ -196,9 +196,9 @@ def _times(rows):
     known = rows[rows.ratio.notna()]
     if known.empty:
         return "–"
-    missed = len(rows) - len(known)
-    return (f"{number(known.ratio.median())} ({number(known.ratio.min())} to {number(known.ratio.max())}), slower in {(known.low > 1).sum()} of {len(known)}"
-            + (f"; {missed} of {len(rows)} errors not reached" if missed else ""))
+    single = f", {one} of a single round" if (one := (known.high == math.inf).sum()) else ""
+    return "; ".join([f"{number(known.ratio.median())} ({number(known.ratio.min())} to {number(known.ratio.max())}), slower in {(known.low > 1).sum()} "
+                      f"of {len(known)}{single}", *lacking(rows)])
 
 
 def mechanisms(known):
