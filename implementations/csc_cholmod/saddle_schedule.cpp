@@ -110,8 +110,7 @@ Before unknowns_before(const Model& model, const Coordinates& coordinates,
       }
     }
     std::ranges::sort(needed);
-    const auto rest = std::ranges::unique(needed);
-    needed.erase(rest.begin(), rest.end());
+    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
     result.push_back(std::move(needed));
   }
   return result;
