@@ -1,7 +1,6 @@
 # Points, winners, pairs, figures and page of accuracy on records of a model, and on small tables of every outcome.
 import re
 from pathlib import Path
-from types import SimpleNamespace
 
 import jinja2
 import matplotlib.pyplot as plt
@@ -16,7 +15,6 @@ from analysis.core.style import Look
 from analysis.core.text import between, ends, number
 from study.accuracy import plan
 from study.core.setting import read_settings
-from study.tools.paper import claims
 from study.tests.accuracy_fakes import SETTINGS, Lab, view
 
 HERE = Path(tables.__file__).parent
@@ -191,9 +189,6 @@ def test_mixed_precision_says_whether_it_gains(found):
     assert "At least 1.2 times faster in 0 of 1" in nowhere and "three/a" in nowhere
     [alone] = sentences.of_precision(table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf))  # the faster one is not the first
     assert "All were timed in one process only, so nothing is shown; the best speed-up is about 2 (not bounded) of one/a" in alone
-    claim = SimpleNamespace(tables=lambda part: {"pairs": table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf)})
-    assert claims._mixed(claim)[0] is None and claims._mixed(SimpleNamespace(tables=lambda part: {"pairs": table}))[0] is False
-    assert claims._mixed(SimpleNamespace(tables=lambda part: {"pairs": table.iloc[1:2]}))[0] is None  # of another class
 
 
 def test_the_fronts_are_those_of_their_layer(found):

@@ -179,7 +179,9 @@ def test_a_time_is_the_sum_of_its_terms():
 
 
 def test_dense_ones_factorize_in_the_saddle_point_form_as_in_the_penalty_form():
-    assert times.as_penalty({"passes*n": 1.0, "passes*n*n*n": 3.0}) == {"saddle_passes*stiff*n*n*n": 3.0}
+    penalty = {"passes*n": 1.0, "passes*springs": 2.0, "passes*n*n*n": 3.0}
+    assert times.as_penalty(penalty, True) == {"saddle_passes*springs": 2.0, "saddle_passes*stiff*n*n*n": 3.0}
+    assert times.as_penalty(penalty, False) == {"saddle_passes*springs": 2.0}
     tables = mechanisms()
     stiff = tables["mechanisms"].family.isin(["chain", "beam"])
     tables["mechanisms"] = tables["mechanisms"].assign(stiff=stiff.astype(float), saddle_passes=2.0)
