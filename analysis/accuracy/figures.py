@@ -31,7 +31,8 @@ def draw(tables, view):
     about = tables["references"].drop_duplicates("subject").set_index("subject")
     for subject, rows in points[points.fill_asked.isna()].groupby("subject", sort=False):
         one = about.loc[subject]
-        found[name_of(subject)] = work(rows, winners[winners.fill_asked.isna() & (winners.subject == subject)], look,
+        found[name_of(subject)] = work(
+            rows, winners[winners.fill_asked.isna() & (winners.subject == subject)], look,
             "largest of position, m" if one.unit == "m" else "root mean square, relative",
             f"{one.title}, n = {rows.variables.max():.0f}, {one.duration:g} s")
     if winners.loops.notna().any():

@@ -12,7 +12,8 @@ def context(tables, view):
                 for one in references if one["subject"] in by_subject]
     problems = winners[winners.loops.isna()]
     kinds = {kind: rows_of(table[table.kind == kind]) for kind in pairs.PAIRS}
-    return {"settings": view.settings, "step": step, "summary": [*sentences.summary(winners)], "pairs_step": pairs.STEP,
+    return {
+        "settings": view.settings, "step": step, "summary": [*sentences.summary(winners)], "pairs_step": pairs.STEP,
         "chains": [part for part in subjects if part["about"]["unit"] == "m"],
         "problems": [part for part in subjects if part["about"]["unit"] != "m"],
         "lost": [about for about in references if about["own_error"] is None],

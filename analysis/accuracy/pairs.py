@@ -10,7 +10,8 @@ from analysis.accuracy.points import USED
 STEP = 1.25e-3  # s
 FORMS, PRECISION, REUSE = "form", "precision", "reuse"
 PAIRS = {  # of settings by name: what the second one costs or gains beside the first
-    FORMS: (("default", "saddle"),), PRECISION: (("default", "mixed"), ("default", "single"), ("saddle", "saddle mixed")),
+    FORMS: (("default", "saddle"),),
+    PRECISION: (("default", "mixed"), ("default", "single"), ("saddle", "saddle mixed")),
     REUSE: (("default", "every-step"), ("default", "kept"), ("default", "kept tight"), ("saddle", "saddle every-step"), ("saddle", "saddle kept"))}
 CLASSES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)  # m; an error is of the smallest that it meets
 NO_CLASS = ("", "dropped", "excluded", "timeout")  # outcomes of runs that tell no error class
@@ -22,8 +23,10 @@ def table(scene, made, measured):
     own = made[(made.step / STEP - 1).abs() < 1e-6].sort_values("duration", kind="stable")
     runs = {(run["implementation"], run["setting"]): run for run in own.to_dict("records")}  # the longest
     mine = measured.loc[(measured.role == "pair") & (measured.status != "dropped"), measured.columns.intersection([*USED, "layout"])]
-    return pandas.DataFrame([{"scene": scene, "kind": kind, "first": both[0], "second": both[1], "implementation": name}
-        | _row(rows, [runs.get((name, setting)) for setting in both], both) for kind, pairs in PAIRS.items() for both in pairs
+    return pandas.DataFrame([
+        {"scene": scene, "kind": kind, "first": both[0], "second": both[1], "implementation": name}
+        | _row(rows, [runs.get((name, setting)) for setting in both], both)
+        for kind, pairs in PAIRS.items() for both in pairs
         for name, rows in mine[mine.setting.isin(both)].groupby("implementation", sort=False) if rows.setting.nunique() == 2])
 
 

@@ -28,7 +28,8 @@ def runs(records, subject, known):
     for record in (one for one in records if one.role.startswith("run/")):
         status, reason = of_run(record)
         row = {"scene": record.cell["scene"], "implementation": record.cell["contenders"][0], "setting": setting_of(record),
-               "step": record.option("--step"), "duration": record.option("--duration"), "status": status, "reason": reason, "record": record.name}
+               "step": record.option("--step"), "duration": record.option("--duration"), "status": status,
+               "reason": reason, "record": record.name}
         found = record.output
         if record.done and found["steps"]:
             row |= {"variables": found["variables"], "fill": found["tangent_nonzeros"] / found["variables"]**2,

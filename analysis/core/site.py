@@ -37,7 +37,8 @@ def write_part(folder, part):
     plt.close("all")
     known, others = _module(part, "page").context(tables, view), told(disturbance(found))
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
-        **_frame(folder, part), **known, disturbance=others, control="" if "controls" in known else said_of_controls(tables.get("controls", ())), figures=figures, schema=schema.of_part(part)))
+        **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part),
+        control="" if "controls" in known else said_of_controls(tables.get("controls", ()))))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
         "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],

@@ -358,7 +358,7 @@ std::string library_version() {
 /// that wakes waiting threads, of which there are none, by a system call at each region's end. The
 /// supernodal code has a region or two per supernode. Whoever else calls it gets the runtime's own.
 extern "C" [[gnu::visibility("default")]] void GOMP_parallel(void (*region)(void*), void* data,
-                                                             unsigned threads, unsigned flags) {
+                                                              unsigned threads, unsigned flags) {
   static const auto runtime =
       reinterpret_cast<decltype(&GOMP_parallel)>(dlsym(RTLD_NEXT, "GOMP_parallel"));
   if (mbs::csc_cholmod::on_this_thread || runtime == nullptr) return region(data);
