@@ -54,7 +54,7 @@ def write_json(path, data):
 
 
 def as_json(data):
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write_text(path, text):

@@ -60,6 +60,8 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"assembly", assembly_json(scene.assembly)},
                {"status", to_string(summary.status)},
                {"status_reason", summary.reason},
+               {"branch_doubt", summary.branch_doubt},
+               {"forces_lost", summary.forces_lost},
                {"failed_at", finite_or_null(summary.failed_at)},
                {"steps", summary.steps},
                {"steps_at_limit", summary.steps_at_limit},
@@ -88,7 +90,8 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
 std::string summary_text(const nlohmann::json& json, const RunSummary& summary) {
   std::string text = fmt::format("{} on {}\n", json["implementation"].get<std::string>(),
                                  json["scene"].get<std::string>());
-  text += fmt::format("  status                 {}\n", json["status"].get<std::string>());
+  text += fmt::format("  status                 {}{}\n", json["status"].get<std::string>(),
+                      summary.status == RunStatus::plausible ? ": " + summary.reason : "");
   text += fmt::format(
       "  size                   {} variables, {} constraints, {} non-zeros in the tangent\n",
       json["variables"].get<int>(), json["constraints"].get<int>(),

@@ -161,6 +161,8 @@ TEST(BranchWatch, LetsALoopPassItsSingularPositions) {
   const RunSummary estimated = run(scene, test::reference(), test::with_half_step(scene, settings));
   EXPECT_EQ(estimated.status, RunStatus::plausible) << estimated.reason;
   EXPECT_NE(estimated.reason.find("singular position"), std::string::npos) << estimated.reason;
+  EXPECT_EQ(estimated.branch_doubt, estimated.reason);
+  EXPECT_EQ(summary.branch_doubt, "") << "half the step was not asked";
 }
 
 TEST(BranchWatch, TakesNoDirectionFromRoundingAtRest) {

@@ -142,6 +142,9 @@ TEST_F(SimulateProgram, HasNoPositionErrorWithoutAnExactSolution) {
   const auto run = simulate("'" + scene + "' --duration 0.2 --json");
   EXPECT_EQ(run.status, 0) << run.errors;
   EXPECT_TRUE(json::parse(run.output).at("position_error_max").is_null());
+  EXPECT_NE(simulate("'" + scene + "' --duration 0.2")
+                .output.find("\n  status                 plausible: no exact motion is known"),
+            std::string::npos);
 }
 
 TEST_F(SimulateProgram, EveryImplementationRuns) {

@@ -3,7 +3,8 @@ import os
 import re
 from pathlib import Path
 
-OTHERS = 0.5  # of a processor, by the load's mean over a minute, from which the machine is busy: as `mbs bench` has it
+# Of the processors, by the load's mean over a minute, from which the machine is busy, without what is timed: as `mbs bench` has it.
+OTHERS = max(0.5, (os.cpu_count() or 1) / 2 - 1)
 
 
 def busy():

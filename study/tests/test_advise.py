@@ -250,7 +250,7 @@ class Runs:
     def __call__(self, *asked, **_):
         self.ran.append(asked[:5])
         self.limits += asked[5:6]
-        return {"status": "ok", "reason": "", "implementation": asked[2]} | self.row(*asked[:5])
+        return {"status": "ok", "reason": "", "implementation": asked[2], "forces_lost": ""} | self.row(*asked[:5])
 
     def left(self, share=1.0):
         return 1.0
@@ -288,12 +288,14 @@ class Invented(Runs):
         self.rows.append({"kind": kind, "setting": setting.name, "implementation": name, "step": step, "duration": duration,
                           "status": "ok", "reason": "", "estimate": error if checks == HALVED else None,
                           "exact": error if checks == EXACT else None, "step_us": us, "step_us_median": us, "step_us_p99": 2 * us,
-                          "deadline_misses": None, "steps": round(duration / step), "penalty": 1e7, "tolerance": 1e-9,
+                          "step_us_mean": us, "deadline_misses": None, "steps": round(duration / step), "penalty": 1e7, "tolerance": 1e-9,
+                          "branch_doubt": "", "forces_lost": "", "warnings": [],
                           "command": f"build/mbs simulate bar --step {step:g} --duration {duration:g}", "raw_file": "raw"})
         return self.rows[-1]
 
     def pilot(self, setting, name, step, duration, limit):
-        return Pilot(step, "ok", self("pilots", setting, name, step, duration, limit, HALVED)["estimate"], 1.0)
+        row = self("pilots", setting, name, step, duration, limit, HALVED)
+        return Pilot(step, row["status"], row["estimate"], 1.0 if row["status"] == "ok" else math.nan, row["reason"])
 
 
 @pytest.mark.parametrize("error", [1e-2, 1e-4, 1e-8])
@@ -324,13 +326,25 @@ def test_where_all_that_was_timed_is_late_settings_that_promised_less_are_tried(
     assert any("99th percentile 35 us: beyond the deadline" == one["why"] for one in told["refused"])
 
 
+def test_a_motion_that_is_refused_at_any_step_is_not_tried_in_shorter_ones():
+    class Hoist(Invented):  # its rope is gone after three seconds
+        def __call__(self, kind, setting, name, step, duration, *more, **words):
+            row = super().__call__(kind, setting, name, step, duration, *more, **words)
+            return row | ({"status": "refused", "reason": "a value of 0 at t = 3 s", "estimate": None} if duration > 3 else {})
+    run = Hoist()
+    told = answer.as_json(seek(Question("bar", 1e-3, 20.0, None, 45.0), catalogue(), run.DESCRIBED, run.VARIANTS, run), run, "folder")
+    assert sum(row["kind"] == "pilots" for row in run.rows) == 1 and told["helps"] == ["--duration 2.5: a run so long is not refused"]
+    assert told["why_not"] == "no pilot gave a motion to go by: refused at any step, a value of 0 at t = 3 s"
+    assert json.dumps(told, allow_nan=False) and told["settings"][0]["pilots"][0]["step_us"] is None
+
+
 def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
     estimate = {"estimate": 0.0114, "low": 0.0103, "high": 0.0125}
     assert answer._error(estimate | {"exact": 0.0098}).startswith("0.0098 m, from the exact motion; by half the step 0.0114 m")
     assert answer._error(estimate | {"exact": None}).startswith("0.0114 m (0.0103")
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=()):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=()):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     advice = asked(deadline_us=deadline_us, step=step, candidates=[
@@ -341,7 +355,8 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
 
     def row(kind, setting, name, step, duration):
         return {"status": dict(plain).get(name, "ok") if kind == "outcome" else "ok", "setting": setting.name, "step": step,
-                "step_us_p99": p99 if kind == "outcome" else 1e3, "step_us": 20.0, "estimate": estimate(step), "exact": exact, "duration": duration}
+                "step_us_p99": p99 if kind == "outcome" else 1e3, "step_us": 20.0, "estimate": estimate(step), "exact": exact, "duration": duration,
+                "forces_lost": dict(forces).get(setting, "")}
     run = Runs(row)
     advice.timed = lambda one, number: run(f"round{number}", one.setting, one.implementation, one.step, 1.0)
     verify(advice, run)
@@ -375,6 +390,17 @@ def test_who_was_only_slower_comes_back_when_the_fastest_needs_a_shorter_step(us
     advice, ran = verified(lambda step: next(estimates), others=[slower])
     assert [name for name, _ in ran] == ["a", then] and advice.chosen.implementation == then
     assert advice.chosen.reason == ""
+
+
+def test_forces_that_are_rounding_refuse_a_setting_whoever_has_it():
+    other = timing.Candidate(SADDLE, "a", 8e-3, [{"step": 8e-3, "step_us": 30.0, "step_us_p99": 1.0}] * 3)
+    advice, ran = verified(lambda step: 1e-4, others=[other], forces={PENALTY: "rounding may be 18 % of the constraint forces"})
+    assert len(ran) == 2 and advice.chosen is other
+    assert advice.verifications[0]["refused"] == "forces-lost: rounding may be 18 % of the constraint forces"
+    record = SimpleNamespace(done=True, seconds=0.1, command=["mbs"], name="x", machine={}, output={
+        "status": "degraded", "status_reason": "both", "forces_lost": "rounding", "position_error_estimate": 1e-6})
+    pilot = Runner(SimpleNamespace(one=lambda cell: record, names={}), "bar", 4, [Contender("a/b", "a/b")]).pilot(PENALTY, "a/b", 1e-2, 1.0, 60)
+    assert (pilot.status, pilot.reason, pilot.valid) == ("forces-lost", "rounding", False)
 
 
 def test_an_estimate_below_that_of_a_shorter_step_is_raised():
@@ -451,6 +477,7 @@ def test_who_is_tried_is_near_the_fastest_by_the_rule_or_needed():
     assert list(tried) == ["quick/b", "near/c", "new/d"] and left_out["slow/a"].startswith("9.0 times the time of quick/b")
     assert list(named(described, variants, [PENALTY, Setting("rattle")])[0])[-1] == "slow/a"
     assert list(named(described | {"recommendation": []}, variants, [PENALTY])[0]) == list(variants)
+    assert {**named(described, variants, [PENALTY], everyone=True)[0]}.keys() == variants.keys()
 
 
 def test_who_does_not_simulate_the_scene_is_no_measure_of_who_is_near():
@@ -701,16 +728,26 @@ def test_where_every_pilot_was_lost_the_answer_says_how():
     advice.hurry("some error pilots would have taken longer than the time left")
     lost = [Pilot(1e-2 / 2**k, "diverged", None, reason="constraints violated: rod rocker") for k in range(3)]
     advice.found = {PENALTY: Found(PENALTY, lost)}
-    assert answer._why_not(advice) == "no pilot came to its end: diverged, constraints violated: rod rocker"
+    assert answer._why_not(advice) == "no pilot gave a motion to go by: diverged, constraints violated: rod rocker"
     advice.found[SADDLE] = Found(SADDLE, pilots(1.0))
     assert answer._why_not(advice) == "no setting reaches the error within the budget of 45 s"
 
 
 def test_a_line_that_ends_as_degraded_says_why_and_why_that_is_no_objection():
-    told = {"status": "degraded", "status_reason": "local errors add up", "error": {"high": 2e-3}}
+    told = {"status": "degraded", "status_reason": "local errors add up", "error": {"high": 2e-3}, "warnings": []}
     first, second = answer._ends_as(told)
     assert "degraded: local errors add up" in first and "half the step shows 0.002 m at most" in second
     assert len(answer._ends_as(told | {"status": "ok"})) == 1
+    assert answer._ends_as(told | {"status": "ok", "warnings": ["the tolerance is loose"]})[:2] == ["ok", "warning: the tolerance is loose"]
+
+
+def test_what_half_the_step_does_not_tell_is_said():
+    class Singular(Invented):
+        def __call__(self, *asked, **words):
+            return super().__call__(*asked, **words) | {"branch_doubt": "a singular position was passed"}
+    run = Singular()
+    told = answer.as_json(seek(Question("bar", 1e-3, 2.0, None, 45.0), [PENALTY], run.DESCRIBED, run.VARIANTS, run), run, "folder")
+    assert "  but                   a singular position was passed\n" in answer.text(told)
 
 
 def test_a_busy_machine_is_said():
@@ -722,6 +759,9 @@ def test_a_shorter_step_is_said_to_help_only_where_it_was_seen_to():
     advice = asked(step=1e-2, found={PENALTY: Found(PENALTY, pilots(9e-3))})
     what_helps(advice, run)
     assert advice.helps == ["--step 0.00125: in such steps penalty keeps the error"]
+    lost = asked(step=1e-2, found={PENALTY: Found(PENALTY, pilots(None))})
+    what_helps(lost, run)
+    assert lost.helps == ["--step 0.00125: in such steps penalty keeps the error"]
 
 
 def test_the_error_that_pilots_keep_is_named():

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <thread>
 #include <utility>
 
 #include "bench/paired_ratio.hpp"
@@ -138,9 +139,10 @@ std::string reason_of(const ContenderResult& contender) {
 }
 
 std::string busy_note(const SceneResult& scene, double load) {
-  constexpr double kOthers = 0.5;  // of a processor, by the load's mean over a minute
+  // By the load's mean over a minute, with what is timed here: from half of the processors on.
+  const double busy = std::max(1.5, std::thread::hardware_concurrency() / 2.0);
   const double factor = clock_factor(scene);
-  if (factor <= kCalm && load <= 1.0 + kOthers) return "";
+  if (factor <= kCalm && load <= busy) return "";
   std::string what;
   if (factor > kCalm) what = fmt::format("by the clock, steps took {:.2f} times as long", factor);
   if (load >= 0.0) what += fmt::format("{}load {:.1f}", what.empty() ? "" : ", ", load);

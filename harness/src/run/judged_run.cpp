@@ -292,6 +292,12 @@ void JudgedRun::conclude() {
   if (adds_local_errors_) {
     summary_.local_error_sum = judge_.ahead_max() + local_errors_.worst().sum;
   }
+  summary_.branch_doubt = watch_.doubt();
+  if (half_ && summary_.branch_doubt.empty() && !watch_.passage().empty()) {
+    summary_.branch_doubt = watch_.passage() +
+                            ", where half the step goes the same way: it does not tell whether it "
+                            "is the right one";
+  }
   const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
   if (share > RunBounds{}.pass_limit_share) {
     summary_.status = RunStatus::not_converged;
@@ -314,15 +320,13 @@ void JudgedRun::conclude() {
   if (std::ranges::any_of(scene_.elements.outputs, is_force)) {
     State state;
     access_.get_state(state);
-    add(drowned_forces(*access_.model, settings_.step, state));
+    add(summary_.forces_lost = drowned_forces(*access_.model, settings_.step, state));
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
-  } else if (half_ && !watch_.passage().empty()) {
+  } else if (!summary_.branch_doubt.empty()) {
     summary_.status = RunStatus::plausible;
-    summary_.reason = watch_.passage() +
-                      ", where half the step goes the same way: it does not tell whether it is "
-                      "the right one";
+    summary_.reason = summary_.branch_doubt;
   } else if (!judge_.knows_exact_motion() && !half_) {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";

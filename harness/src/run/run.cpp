@@ -81,7 +81,7 @@ const std::vector<Outcome>& outcomes() {
       {RunStatus::ok, "ok",
        "within bounds; the position error is known (exact motion) or estimated (--half-step)"},
       {RunStatus::plausible, "plausible",
-       "nothing is known to be wrong; no position error is known"},
+       "nothing is known to be wrong, but the position error is not known for sure"},
       {RunStatus::degraded, "degraded", "simulated to its end, but less accurate than ok allows"},
       {RunStatus::not_converged, "not-converged", "too many steps ended at the pass limit"},
       {RunStatus::diverged, "diverged", "the solution was lost; a shorter step often helps"},

@@ -4,15 +4,16 @@ from collections import namedtuple
 from dataclasses import dataclass, field
 
 from study.tools.advise import timing
-from study.tools.advise.choice import LEAST_STEPS, tidy
+from study.tools.advise.choice import LEAST_STEPS, Pilot, tidy
 from study.tools.advise.probe import find_speeds, fits, serving
 from study.tools.advise.runner import QUICK, REPEATS
 from study.tools.advise.search import Search
-from study.tools.advise.verify import verify, what_helps
+from study.tools.advise.verify import REFUSED, refusal, verify, what_helps
 
 FIRST_STEP = 1e-2  # s; of the first pilot, where the run has enough such steps
 SLOWER = 1.7       # times the time of the most promising, by pilots and probe: who is slower is not timed
 PILOT_SHARE, TIMING_SHARE = 0.6, 0.8  # of the budget: when pilots, when timings must be done
+NEVER = "refused at any step"  # a pilot's status
 QUICK_SHARE = 1 / 500  # of the budget: a run for the time of a setting's step
 
 
@@ -28,7 +29,9 @@ class Advice:
     variants: dict                                  # {implementation: what `mbs list --json` says}
     speeds: dict = field(default_factory=dict)      # {implementation that is tried: us a step}, fastest first
     probe: list = field(default_factory=list)       # rows
+    everyone: bool = False                          # no implementation is left out
     left_out: dict = field(default_factory=dict)    # {implementation: why it is not tried}
+    never: str = ""                                 # why a run of the whole duration is refused, whatever its step
     found: dict = field(default_factory=dict)       # {Setting: search.Found}
     candidates: list = field(default_factory=list)
     timed: object = None                            # (candidate, round) → its row
@@ -54,9 +57,9 @@ class Advice:
         self.cut_short.append(sentence)
 
 
-def advise(question, settings, described, variants, run):
+def advise(question, settings, described, variants, run, everyone=False):
     """The Advice; `run` is a Runner."""
-    advice = Advice(question, described, variants)
+    advice = Advice(question, described, variants, everyone=everyone)
     form = described["scheme"]["take"]  # goes first
     usable = [setting for setting in sorted(settings, key=lambda one: one.scheme != form)
               if not fits(setting, described) and serving(setting, variants)]
@@ -81,12 +84,16 @@ def _pilots(advice, settings, run):
 
     def pilot(setting, step):
         name = advice.serving(setting)[0]
+        if advice.never:
+            return Pilot(step, NEVER, None, reason=advice.never)
         usual = advice.found[setting].step_us()
         expected = 3e-6 * run.slowdown * duration / step * (usual if math.isfinite(usual) else advice.speeds[name])
         if expected > run.left(PILOT_SHARE):
             return None
         run.tell(f"error pilots: {setting.name}, step {step:g} s")
         found = run.pilot(setting, name, step, duration, min(max(1.0, run.left(TIMING_SHARE)), question.budget / 10 + 4 * expected))
+        if found.status == REFUSED and not any(pilot.status == REFUSED for pilot in advice.found[setting].pilots):
+            advice.never = refusal(setting, name, step, duration, run)
         return None if found.status == "timeout" else found
 
     def quick(setting, step):

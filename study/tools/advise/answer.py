@@ -34,10 +34,11 @@ def _busy(waited):
 def _times(one):
     """Time of a step and of a simulated second, with the least and the most of the rounds, us; None without any."""
     if not one.rows:
-        return {"step_us": None, "us_per_second": None, "rounds": 0, "timed_step": None}
+        return {"step_us": None, "us_per_second": None, "rounds": 0, "timed_step": None, "timed_over": None}
     middle, low, high = one.us_per_second()
     return {"step_us": {"median": middle * one.step, "low": low * one.step, "high": high * one.step, "p99": one.p99_us()},
-            "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows), "timed_step": one.rows[-1]["step"]}
+            "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows), "timed_step": one.rows[-1]["step"],
+            "timed_over": min(row["duration"] for row in one.rows)}
 
 
 def _advised(advice):
@@ -45,9 +46,10 @@ def _advised(advice):
     (low, high), times, end = expected_error(advice, one, row), _times(one), advice.described["drivers_end"]
     return {"implementation": one.implementation, "setting": one.setting.name, "scheme": one.setting.scheme, "changes": changes,
             "precision": changes.get("precision", "double"), "step": one.step, "penalty": row["penalty"], "tolerance": row["tolerance"],
-            "status": line["status"], "status_reason": line["reason"], "verified_over": within(row["duration"], one.step, end),
+            "status": line["status"], "status_reason": line["reason"], "branch_doubt": row["branch_doubt"], "warnings": line["warnings"],
+            "verified_over": within(row["duration"], one.step, end),
             "error": {"estimate": row["estimate"], "low": low, "high": high, "exact": row["exact"]},
-            **times, "step_us": times["step_us"] | {"p99": line["step_us_p99"]}, "deadline_misses": line["deadline_misses"], "steps": line["steps"],
+            **times, "step_us": times["step_us"] | {"mean": line["step_us_mean"], "p99": line["step_us_p99"]}, "deadline_misses": line["deadline_misses"], "steps": line["steps"],
             "command": advised(line["command"], advice.variants[one.implementation]["library"], within(advice.question.duration, one.step, end)),
             "raw_file": row["raw_file"]}
 
@@ -55,8 +57,8 @@ def _advised(advice):
 def _setting(setting, advice):
     found = advice.found.get(setting) or Found(setting, reason=fits(setting, advice.described) or (
         "no implementation simulates the scene" if serving(setting, advice.variants) else "no implementation serves it"))
-    pilots = [pilot._asdict() | {"order": halvings(found.pilots).get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
-              for pilot in found.pilots]
+    pilots = [pilot._asdict() | {"step_us": pilot.step_us if pilot.step_us > 0 else None, "order": halvings(found.pilots).get(pilot.step),
+                                 "counts": counts(pilot.step, found.pilots, advice.pilot_error)} for pilot in found.pilots]
     return {"setting": setting.name, "step": found.chosen, "pilots": pilots, "reason": found.reason}
 
 
@@ -105,7 +107,7 @@ def _why_not(advice):
     pilots = [pilot for one in found for pilot in one.pilots]
     if pilots and not any(pilot.status in FINISHED for pilot in pilots):
         reasons = (f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS])
-        return f"no pilot came to its end: {'; '.join(dict.fromkeys(reasons))}"
+        return f"no pilot gave a motion to go by: {'; '.join(dict.fromkeys(reasons))}"
     return ("no setting reaches the error" + (f" in steps of {question.step:g} s" if question.step else "")
             + (f" within the budget of {question.budget:g} s" if advice.hurried else ""))
 
@@ -119,7 +121,8 @@ def text(answer):
     tried = (f"{sum(bool(one['pilots']) for one in answer['settings'])} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
              f"{len({run['implementation'] for run in runs})} implementations, "
              f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
-    return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [tried]), *_rows("raw files", [answer["results"]])])
+    left_out = [f"{len(answer['left_out'])} implementations, slower by the rule of mbs describe or unknown to it"] if answer["left_out"] else []
+    return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [tried]), *_rows("left out", left_out), *_rows("raw files", [answer["results"]])])
 
 
 def _rows(name, values):
@@ -143,11 +146,11 @@ def _advice_lines(answer):
     rows = {"implementation": [told["implementation"]], "settings": [told["setting"]], "step": [f"{told['step']:g} s"],
             "penalty factor": [f"{number(told['penalty'], 4)}, automatic"], "tolerance": [f"{number(told['tolerance'])} m"],
             "precision": [told["precision"]], "expected error": [f"{_error(told['error'])}, verified over {told['verified_over']:g} s"],
-            "ends as": _ends_as(told),
+            "but": [told["branch_doubt"]] if told["branch_doubt"] else [], "ends as": _ends_as(told),
             "time per step": [f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
-                              f"round{'s' * (told['rounds'] > 1)}"
+                              f"round{'s' * (told['rounds'] > 1)} over the first {told['timed_over']:g} s"
                               + f" of step {told['timed_step']:g} s" * (told["timed_step"] != told["step"])
-                              + f"; with them, over {told['verified_over']:g} s, 99th percentile {number(step['p99'])} us"],
+                              + f"; with them, over {told['verified_over']:g} s, mean {number(step['mean'])} us, 99th percentile {number(step['p99'])} us"],
             "per simulated second": [_spread(times["median"], times, "ms", 1e-3)]}
     if told["deadline_misses"] is not None:
         limit = number(in_time(told["step"], answer["question"]["deadline_us"]))
@@ -161,7 +164,8 @@ def _advice_lines(answer):
 
 def _ends_as(told):
     """How the advised line ends, and why that is no objection."""
-    if told["status"] in GOOD:
-        return [told["status"]]
-    return [f"{told['status']}: {told['status_reason']}", "by the program's own bounds, which know nothing of the error that you asked for; half "
-            f"the step shows {number(told['error']['high'])} m at most"]
+    lines = [told["status"]] if told["status"] in GOOD else [f"{told['status']}: {told['status_reason']}"]
+    lines += [f"warning: {warning}" for warning in told["warnings"]]
+    return lines if told["status"] in GOOD and len(lines) == 1 else [
+        *lines, "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
+        f"{number(told['error']['high'])} m at most"]

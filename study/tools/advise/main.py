@@ -52,7 +52,7 @@ def advise(arguments):
     if len(options.scene) != 1 or options.error is None:
         raise StudyError("one SCENE and --error E are needed (see study/advise --help)")
     answer = ask(options)
-    print(json.dumps(answer, indent=1) if options.json else text(answer))
+    print(json.dumps(answer, indent=1, allow_nan=False) if options.json else text(answer))
     return 0 if answer["met"] else 1
 
 
@@ -85,7 +85,7 @@ def ask(options, folder=None):
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
         clock = {"budget": question.budget, "began": time.monotonic() - spent}  # without the time of waiting
         run = runner_of(folder, inputs, described, names, known, question.deadline_us, options.json, **clock)
-        advice = seek(question, catalogue(), described, {name: known.variants[name] for name in names}, run)
+        advice = seek(question, catalogue(), described, {name: known.variants[name] for name in names}, run, bool(options.only))
         run.lab.display.end()
         answer = as_json(advice, run, folder)
         write_json(folder / "advice.json", answer)

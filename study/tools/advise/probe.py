@@ -47,7 +47,7 @@ def find_speeds(advice, settings, run):
     """Fills `advice.speeds`. The rule does not know who simulates the scene: whoever does not is no measure of who is near."""
     able, seen = dict(advice.variants), set()
     while True:
-        tried, advice.left_out = named(advice.described, able, [one for one in settings if serving(one, able)])
+        tried, advice.left_out = named(advice.described, able, [one for one in settings if serving(one, able)], advice.everyone)
         rows, found = probe({name: able[name] for name in tried if name not in seen}, advice.described, run,
                             advice.question.first_step, advice.question.duration)
         advice.probe += rows
@@ -60,12 +60,13 @@ def find_speeds(advice, settings, run):
         able = {name: said for name, said in able.items() if name not in unable}
 
 
-def named(described, variants, settings):
+def named(described, variants, settings, everyone=False):
     """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those near the fastest by the
-    rule of `mbs describe`, who is sparse and unknown to it, and who else is needed for a setting; all without a rule."""
-    if not (foreseen := _foreseen(described, variants)):
-        return dict.fromkeys(variants, math.nan), {}
+    rule of `mbs describe`, who is sparse and unknown to it, and who else is needed for a setting; all without a rule, or if `everyone` is."""
+    foreseen = _foreseen(described, variants)
     order = sorted(foreseen, key=foreseen.get)
+    if everyone or not foreseen:
+        return {name: foreseen.get(name, math.nan) for name in dict.fromkeys((*order, *variants))}, {}
     tried = [name for name in order if foreseen[name] <= BEHIND * foreseen[order[0]]]
     form = Setting(described["scheme"]["take"])
     tried += [name for name in serving(form, variants) if name not in foreseen and not variants[name]["dense"]]

@@ -12,6 +12,7 @@ from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 from study.tools.advise.timing import in_time
 
+FORCES_LOST = "forces-lost"  # of a pilot: it has all of its motion, but the forces that the scene asks for are rounding
 EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact one, where it is known; an estimate, too
 # Judged after every step, as the usual judging of a few may keep pace with the motion and miss its worst; but where steps
 # times variables are above VALUES, of a share of them, JUDGED at least.
@@ -77,9 +78,10 @@ class Runner:
         times, least = found.get("step_us", {}), found.get("least_us") or {}
         row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration, "status": status,
                "reason": reason, "estimate": found.get("position_error_estimate"), "exact": found.get("position_error_max"),
-               "step_us": least.get("mean"), "step_us_median": times.get("median"), "step_us_p99": times.get("p99"),
+               "step_us": least.get("mean"), "step_us_mean": times.get("mean"), "step_us_median": times.get("median"),
+               "step_us_p99": times.get("p99"),
                "deadline_misses": times.get("deadline_misses"),
-               **{key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings")},
+               **{key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings", "branch_doubt", "forces_lost")},
                "seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
         if self.truth and checks == EXACT and record.done and status in FINISHED:
             row["exact"] = self.truth.error(record.series)
@@ -88,7 +90,8 @@ class Runner:
 
     def pilot(self, setting, variant, step, duration, seconds):
         row = self("pilots", setting, variant, step, duration, seconds, checks=HALVED)
-        return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"), row["reason"])
+        status, reason = (FORCES_LOST, row["forces_lost"]) if row["forces_lost"] else (row["status"], row["reason"])
+        return Pilot(row["step"], status, row["estimate"], row["step_us_median"] or float("nan"), reason)
 
     def left(self, share=1.0):
         """Seconds of a share of the budget."""

@@ -17,7 +17,7 @@ from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
 SCENES = {  # (kind, s): scenes
-    ("four-bar", 5): ("four-bar:1", "four-bar:2", "four-bar:10", "four-bar:40"), ("ladder", 4): ("ladder:12", "ladder:40"),
+    ("four-bar", 5): ("four-bar:1", "four-bar:5", "four-bar:10", "four-bar:40"), ("ladder", 4): ("ladder:12", "ladder:40"),
     ("grid", 3): ("grid:5x5", "grid:10x10"), ("cloth", 3): ("cloth:4x5", "cloth:10x10"), ("truss", 3): ("truss:3", "truss:8"),
     ("vehicle", 4): ("vehicle:8", "vehicle:40"), ("robot", 4): ("robot:8", "robot:30"), ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"),
     ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"), ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"),

@@ -6,11 +6,12 @@ from analysis.core.outcomes import FINISHED
 from analysis.core.text import number
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, Pilot, apart, by_order, enough, known, most, tidy
-from study.tools.advise.runner import HALVED
+from study.tools.advise.runner import FORCES_LOST, HALVED
 
 VERIFICATIONS = 20
 LEAST_SHARE = 0.3  # of the budget that a first verification may take, however little of it is left
 P99 = 1.2   # times the time of a step: its 99th percentile, about, where that was not measured
+REFUSED, SHORTER, AT_ONCE = "refused", 128, 1.0  # a status; times a step, and s, by which a refusal does not depend on the step
 HALVES = 6  # of the duration, to find for how long an error can be kept
 
 
@@ -61,6 +62,10 @@ def _refused(one, row, advice):
     lost = row["status"] not in FINISHED or row["estimate"] is None
     allowed = question.error * row["duration"] / question.duration
     excess = 0 if lost else (expected_error(advice, one, row)[1] if exact is None else exact) / allowed  # what is known exactly needs no margin
+    if row["forces_lost"]:  # whoever the implementation is
+        for other in (other for other in advice.candidates if other.setting == one.setting):
+            other.slower, other.reason = False, f"{FORCES_LOST} when verified {over}: {row['forces_lost']}"
+        return f"{FORCES_LOST}: {row['forces_lost']}"
     if not lost and excess <= 1:
         return ""
     if lost:
@@ -102,6 +107,12 @@ def expected_error(advice, one, row):
     return apart(estimate, order), max(estimate, high if math.isfinite(high) else by_order(one.step, estimate, pilots, order))
 
 
+def refusal(setting, name, step, duration, run):
+    """Why a run so long is refused before it starts, in far shorter steps too, as where a driver leaves its range; "" if it is not."""
+    row = run("whole", setting, name, step / SHORTER, duration, AT_ONCE, repeats=1)
+    return row["reason"] if row["status"] == REFUSED else ""
+
+
 def what_helps(advice, run):
     """Fills `advice.helps`."""
     question, found = advice.question, advice.found.values()
@@ -109,13 +120,19 @@ def what_helps(advice, run):
         advice.helps.append(f"--budget {2 * question.budget:g}: time was short")
     if not (pilots := [(one, pilot) for one in found for pilot in one.pilots]):
         return
+    durations = [float(f"{question.duration / 2**halving:.3g}") for halving in range(1, HALVES + 1)]
+    if advice.never:
+        setting = pilots[0][0].setting
+        if so_long := next((one for one in durations if not refusal(setting, advice.serving(setting)[0], question.first_step, one, run)), None):
+            advice.helps.append(f"--duration {so_long:g}: a run so long is not refused")
+        return
     best, pilot = min(pilots, key=lambda pair: (not pair[1].valid, pair[1].estimate if pair[1].valid else pair[1].step))
     least = min(known(other, one.pilots, advice.pilot_error, one.setting.order) for one, other in pilots)
     if advice.pilot_error < least < math.inf:
         advice.helps.append(f"--error {1.1 * question.error * least / advice.pilot_error:.2g}: so much pilots were seen to keep")
     setting = best.setting
-    if question.step and pilot.valid and pilot.estimate > question.error:
-        fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order))
+    if question.step and not (pilot.valid and pilot.estimate <= question.error):
+        fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order)) if pilot.valid else 2
         steps = [question.step / parts for parts in (fewest, 2 * fewest, 4 * fewest)]  # the order may not show in steps this long
         _first_kept(advice, setting, [(f"--step {step:.12g}", step, question.duration) for step in steps],
                     f"in such steps {setting.name} keeps the error", run)
@@ -126,7 +143,6 @@ def what_helps(advice, run):
         advice.helps.append("a larger --error: its steps are longer, and these take longer than the time that they simulate")
     else:
         step = question.step or pilot.step
-        durations = [float(f"{question.duration / 2**halving:.3g}") for halving in range(1, HALVES + 1)]
         _first_kept(advice, setting, [(f"--duration {one:g}", step, one) for one in durations if one >= LEAST_STEPS * step],
                     f"so long {setting.name} at step {step:g} s keeps the error", run)
 
