@@ -34,6 +34,7 @@ def folder(tmp_path, monkeypatch):
         write_json(folder / "contexts" / f"own-{pair}.json", context)
     write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["families", "map"], "programs": {}, "context": context,
                                      "date": "2026-01-01 10:00"})
+    write_json(folder / "registry.json", listed().listed)
     (folder / "profile.yaml").write_text((ROOT / "study" / "profiles" / "smoke.yaml").read_text())
     rows = {"families": [], "map": []}
     for part, scene, scheme, words in CONTESTS:

@@ -6,7 +6,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from analysis.core import schema, timing
-from analysis.core.files import ROOT, StudyError, digest, read_json, write, write_json
+from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
+from analysis.core.view import context_in
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
 from study.core.contest import Asked, verdicts
@@ -46,7 +47,7 @@ def add(arguments):
         folder = options.to or newest(known)
         writable(folder)
         with locks.only_one(folder):
-            need_records(StudySet(folder))
+            need_records(opened(folder))
             table = measured(folder, options.name, known)
     tell(table, folder, options.name)
     return 0
@@ -154,7 +155,7 @@ def contexts(folder, contenders):
     for environment, one in {one.environment: one for one in contenders}.items():
         now = found[environment] = context_of(one)
         kept = folder / "contexts" / f"{environment.replace('|', '-')}.json"
-        then = read_json(kept) if kept.exists() else known.facts["context"]
+        then = context_in(kept) if kept.exists() else known.facts["context"]
         if other := executor.differing(then, now, (*SAME, "blas_loaded") if kept.exists() else SAME):
             key, its, here = other
             raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
@@ -173,7 +174,7 @@ def versions(context):
 def _begin(folder, column, lab):
     """Goes on with the records of this very program, or removes those of an earlier one."""
     path, program = folder / "added" / f"{column}.json", digest(ROOT / executor.program_of())
-    if not path.exists() or read_json(path).get("program") != program:
+    if not path.exists() or read_object(path).get("program") != program:
         shutil.rmtree(lab.base / column, ignore_errors=True)
         (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
     write_json(path, {"program": program})
@@ -239,7 +240,7 @@ def _finish(folder, column, lab, rows):
     table = shelf.table(rows, "added")
     path = folder / "added" / f"{column}.csv"
     write(path, lambda partial: table.to_csv(partial, index=False))
-    write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {
+    write_json(path.with_suffix(".json"), read_object(path.with_suffix(".json")) | {
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), "context": lab.set.facts["context"],
         "table": digest(path), "records": {name: digest(lab.base / name) for name in sorted(lab.names)}})
     shutil.rmtree(lab.set.scratch, ignore_errors=True)
