@@ -9,7 +9,7 @@ from analysis.core.registry import Registry
 
 CONTEXT = dict.fromkeys(("machine", "commit", "cpu_model", "kernel", "compiler", "flags"), str) | {"dirty": (str, bool), "num_cpus": int,
                                                                                                    ...: (str, int, float, bool)}
-VARIANT = {"name": str, "terms?": [str], "settings?": [str], "library?": str, "tried_for?": str}
+VARIANT = {"name": str, "description": str, "terms?": [str], "settings?": [str], "library?": str, "tried_for?": str}
 ENTRY = dict.fromkeys(("folder", "library", "version", "licence", "reason"), str) | {"available": bool, "variants": [VARIANT], "lacking?": {...: str}}
 REGISTRY = {"implementations": [ENTRY], "blas?": [{"name": str, "available": bool, "reason": str}]}
 

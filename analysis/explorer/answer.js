@@ -197,10 +197,11 @@ function commandsOf(found, state) {
   const lead = ranking.ratios.slice(0, 4).map(([name]) => name), form = found.form === "saddle-point" ? " --scheme saddle-point" : "";
   lines.push(`build/mbs bench ${word} --implementation=${lead.join(",")}${form}`);
   const best = found.error?.ranking?.winner, there = best && found.error.curve.scene === scene;  // elsewhere its step says nothing
-  if (there) lines.push(`build/mbs simulate ${word} --implementation ${best.name} ${DATA.settings[best.setting] ?? ""} --step ${best.step}`.replace(/ {2,}/g, " "));
-  else if (!state.error) lines.push(`build/mbs simulate ${word} --implementation ${ranking.winner}${form}`);
+  const simulate = `build/mbs simulate ${word} --implementation`;
+  if (there) lines.push(`${simulate} ${best.name} ${DATA.settings[best.setting] ?? ""} --step ${best.step}`.replace(/ {2,}/g, " "));
+  else if (!state.error) lines.push(`${simulate} ${ranking.winner}${form}`);
   lines.push(`study/advise ${word} --error ${state.error ?? 1e-3}` + (state.deadline ? ` --deadline-us ${state.deadline}` : "")
              + (state.no.length || state.without.length ? ` --only ${lead.join(" ")}` : ""));
-  const whose = best && !there ? `The step above that reaches ${short(state.error)} m was measured on ${found.error.curve.scene}; study/advise finds yours.` : "";
-  return {lines, note: [note, whose].filter(Boolean).join(" ")};
+  const whose = `The step above that reaches ${short(state.error)} m was measured on ${found.error?.curve.scene}; study/advise finds yours.`;
+  return {lines, note: [note, best && !there ? whose : ""].filter(Boolean).join(" ")};
 }

@@ -139,7 +139,8 @@ def _curve(one, number):
     rows = [[labels[row.implementation], int(row.process), row.status, _known(row.seconds)]
             for row in one.rounds.itertuples() if row.implementation in labels]
     return one._asdict() | {
-        "family": family_of(one.scene), "rounds": rows, "cut": [[number[name], setting, _known(error), _known(time)] for name, setting, error, time in one.cut],
+        "family": family_of(one.scene), "rounds": rows,
+        "cut": [[number[name], setting, _known(error), _known(time)] for name, setting, error, time in one.cut],
         "points": [[number[row.implementation], row.setting, row.step, *map(_known, (row.error, row.time, row.time_low, row.time_high)),
                     row.time_from if isinstance(row.time_from, str) else None, row.record] for row in points.itertuples(index=False)]}
 

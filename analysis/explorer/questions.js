@@ -175,8 +175,10 @@ function answerError(state, set, asked, names) {
   const [curve] = set.curves.filter((one) => one.unit === "m").sort((a, b) => far(a) - far(b));
   const left = ({setting}) => !state.no.includes(setting.startsWith("saddle") ? "saddle" : /^(rattle|multistep)/.test(setting) ? "" : "penalty");
   const layers = new Set([...names].map((name) => ABOUT.get(name).own));  // a curve is the setting's: whoever of its layer made it
-  return curve ? {curve, ranking: rankPoints(curve, curve.points.filter((one) => names.has(one.name) && one.error <= state.error && left(one)),
-                                             curve.cut.filter((one) => layers.has(ABOUT.get(one.name).own) && one.error > state.error && left(one)))} : null;
+  if (!curve) return null;
+  const points = curve.points.filter((one) => names.has(one.name) && one.error <= state.error && left(one));
+  const cut = curve.cut.filter((one) => layers.has(ABOUT.get(one.name).own) && one.error > state.error && left(one));
+  return {curve, ranking: rankPoints(curve, points, cut)};
 }
 
 // µs a step of a contender in a contest: the median over processes of the medians over samples.

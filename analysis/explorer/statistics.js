@@ -149,7 +149,8 @@ function rankPoints(curve, points, cut = []) {
   const byLabel = new Map(sorted.map((point) => [label(point), point]));
   const found = curve.paired.rank(new Set([...first.values()].map(label).filter((one) => !lost.has(one))));
   const winner = found ? byLabel.get(found.winner) : sorted[0];
-  const waiting = sorted.some((point) => point.time <= DATA.near * winner.time && !first.has(point.name)) || cut.some((one) => one.time < winner.time);
+  const waiting = cut.some((one) => one.time < winner.time)
+    || sorted.some((point) => point.time <= DATA.near * winner.time && !first.has(point.name));
   const ratios = found ? found.ratios.map(([one, ratio]) => [byLabel.get(one), ratio]) : [];
   const pointsOf = (labels) => labels.filter((one) => one !== found.winner).map((one) => byLabel.get(one));
   return {winner, ratios, decided: !!found && found.decided && !waiting, settled: !!found && found.settled && !waiting,

@@ -34,7 +34,7 @@ class StudySet(Folder):
     def need_programs(self, names):
         """StudyError naming a program (Cell.built) that changed since the set's records were made; notes new ones."""
         known = self.facts["programs"]
-        found = {name: digest(path)[:16] for name in names for path in [ROOT / program_of(*name.split("@"))] if path.exists()}
+        found = {name: digest(path)[:16] for name in names for path in [ROOT / program_of(*name.split("@", 1))] if path.exists()}
         if set(found) - set(known):
             with locks.noting(self.folder):  # other nodes of a cluster note theirs
                 known.update(facts_of(self.folder)["programs"])

@@ -719,8 +719,9 @@ def test_a_further_page_is_drawn_again_only_with_a_part_that_it_is_made_of(tmp_p
 
 REGISTRY = Registry({"implementations": [
     {"library": "", "version": "1", "licence": "MIT", "reason": ""} | one for one in (
-        {"folder": "one", "available": True, "library": "Lib", "variants": [{"name": "one/a"}, {"name": "one/b", "dense": True}]},
-        {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "settings": ["kept"]}]},
+        {"folder": "one", "available": True, "library": "Lib", "variants": [
+            {"name": "one/a", "description": ""}, {"name": "one/b", "description": "", "dense": True}]},
+        {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "description": "", "settings": ["kept"]}]},
         {"folder": "gone", "available": False, "reason": "not installed", "variants": []})],
     "blas": [{"name": "openblas", "available": True, "reason": ""}, {"name": "atlas", "available": False, "reason": "missing"}]})
 
