@@ -96,7 +96,6 @@ def figures(arguments):
     writable(folder)
     with locks.only_one(folder):
         need_records(studyset)
-        _ = studyset.registry  # StudyError if it is damaged
         run_workflow(studyset, {part: [] for part in parts() if part in studyset.facts["parts"]}, stored=True)
     print(f"site: {folder / 'index.html'}")
     return 0

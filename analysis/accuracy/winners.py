@@ -32,23 +32,25 @@ def winners(table, measured, errors, libraries):
             mine = of_layer(table, layer, libraries)
             reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()
             timed = meeting(mine[mine.scene == scene], float("inf")).to_dict("records")
-            cut = _cut(mine[(mine.scene == scene) | ~mine.scene.str.contains("fill=")])
+            ends = cut(mine, scene)
             for required in errors:
                 none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
                         "decided": None, "settled": None, "equivalent": ""}
                 found = [point for point in timed if point["error"] <= required]
                 ended = dropped and not any(point["time_from"] == ROUNDS for point in found)  # the budget did not reach who may be faster
                 row = none if ended else fastest(found, samples) or none
-                if any(not error <= required and time < row.get("time", 0) for error, time in cut):
+                if any(not error <= required and time < row.get("time", 0) for *_, error, time in ends):
                     row |= {"decided": False, "settled": False}
                 rows.append({"scene": scene, "layer": layer, "required": required} | row)
     return pandas.DataFrame(rows)
 
 
-def _cut(rows):
-    """[(least error, time at its finest value)] of the curves that the budget cut: with finer values they might meet smaller errors."""
-    return [(curve.error[curve.status.isin(FINISHED)].min(), next(iter(curve.time.dropna()), 0.0))
-            for _, curve in rows.sort_values("step").groupby(KEY[:3]) if curve.status.iloc[0] == "dropped"]
+def cut(table, scene):
+    """[(implementation, setting, least error, time at its finest value)] of a scene's curves that the budget cut, and of those at the own fill, which
+    say what is tried at others: with finer values they might meet smaller errors."""
+    rows = table[(table.scene == scene) | ~table.scene.str.contains("fill=")].sort_values("step")
+    return [(*whose, curve.error[curve.status.isin(FINISHED)].min(), next(iter(curve.time.dropna()), 0.0))
+            for (_, *whose), curve in rows.groupby(KEY[:3]) if curve.status.iloc[0] == "dropped"]
 
 
 def met(rows):

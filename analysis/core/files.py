@@ -9,6 +9,7 @@ from pathlib import Path
 
 import yaml
 
+MEND = "restore it from a copy or from git, or begin anew in another directory"
 ROOT = Path(__file__).resolve().parent.parent.parent
 RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
 
@@ -30,18 +31,50 @@ def read_json(path):
     try:
         return json.loads(read_bytes(path))
     except (ValueError, RecursionError) as error:  # of JSON and of UTF-8
-        raise StudyError(f"{path} is damaged ({error})") from error
+        raise damaged(path, error) from error
 
 
 def read_object(path, **kinds):
-    """The JSON object in `path`; StudyError naming the file unless it has these keys with values of these types."""
-    found = read_json(path)
-    if not isinstance(found, dict):
-        raise StudyError(f"{path} is damaged (it is no object)")
-    for name, kind in kinds.items():
-        if not isinstance(found.get(name), kind):
-            raise StudyError(f"{path} is damaged ({name} is {'of another type' if name in found else 'missing'})")
+    """The JSON object in `path`; StudyError naming the file unless it has these keys with values of these kinds (of `misfit`)."""
+    return need_kind(path, read_json(path), kinds)
+
+
+def read_yaml(path, mend=MEND, **kinds):
+    """The same of YAML; by Python's own loader, since libyaml's dies of a deep one."""
+    try:
+        found = yaml.safe_load(read_bytes(path).decode())
+    # Those of YAML, of UTF-8, and whatever a wrong number, date or flag ends in.
+    except (yaml.YAMLError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError, RecursionError) as error:
+        raise damaged(path, error, mend) from error
+    return need_kind(path, found, kinds, mend)
+
+
+def need_kind(path, found, kind, mend=MEND):
+    """What was found in a file; StudyError naming the file unless it is of this kind."""
+    if wrong := misfit(found, kind):
+        raise damaged(path, wrong, mend)
     return found
+
+
+def damaged(path, what, mend=MEND):
+    return StudyError(f"{path} is damaged ({' '.join(str(what).split())[:300]}): {mend}")
+
+
+def misfit(found, kind, name="it"):
+    """What keeps a value from being of a kind, in words; "" if nothing does. A kind is a type, several, [kind of all entries] or {key: kind}: an
+    object that has these keys, but "key?" may be missing, and `...` stands for all others. A flag is no number, a whole number is one."""
+    kinds = kind if isinstance(kind, tuple) else (kind if isinstance(kind, type) else type(kind),)
+    if type(found) not in kinds and not (float in kinds and type(found) is int):
+        return f"{name} is {({dict: 'no object', list: 'no list'}).get(kinds[0], 'of another type')}"
+    inner, within = {}, "" if name == "it" else f"{name}: "
+    if isinstance(kind, list):
+        inner = {f"{within}entry {place}": (one, kind[0]) for place, one in enumerate(found, 1)}
+    elif isinstance(kind, dict):
+        known = {str(key).removesuffix("?"): one for key, one in kind.items() if key is not ...}
+        if missing := [key for key in kind if key is not ... and key not in found and not key.endswith("?")]:
+            return f"{within}{missing[0]} is missing"
+        inner = {f"{within}{key}": (one, known.get(key, kind.get(...))) for key, one in found.items() if key in known or ... in kind}
+    return next(filter(None, (misfit(one, its, key) for key, (one, its) in inner.items())), "")
 
 
 def from_yaml(text):

@@ -3,19 +3,40 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import yaml
-
-from analysis.core.files import StudyError, from_yaml, read_object
+from analysis.core.files import damaged, need_kind, read_json, read_object, read_yaml
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 
+CONTEXT = dict.fromkeys(("machine", "commit", "cpu_model", "kernel", "compiler", "flags"), str) | {"dirty": (str, bool), "num_cpus": int,
+                                                                                                   ...: (str, int, float, bool)}
+VARIANT = {"name": str, "description": str, "terms?": [str], "settings?": [str], "library?": str, "tried_for?": str}
+ENTRY = dict.fromkeys(("folder", "library", "version", "licence", "reason"), str) | {"available": bool, "variants": [VARIANT], "lacking?": {...: str}}
+REGISTRY = {"implementations": [ENTRY], "blas?": [{"name": str, "available": bool, "reason": str}]}
+
+
+# What a set says of itself is read here and nowhere else: each function returns what is whole, or names the file in a StudyError.
 
 def facts_of(folder):
     """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
-    found = read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
+    found = read_object(folder / "set.json", profile=str, only=[str], parts=list, programs={...: str}, context=CONTEXT, date=str)
     if unknown := [part for part in found["parts"] if part not in [*parts()]]:
-        raise StudyError(f"{folder / 'set.json'} is damaged (parts: {unknown[0]!r} is none of {', '.join(parts())})")
+        raise damaged(folder / "set.json", f"parts: {unknown[0]!r} is none of {', '.join(parts())}")
     return found
+
+
+def context_in(path):
+    """A file of contexts/: machine, build and BLAS of an environment."""
+    return need_kind(path, read_json(path), CONTEXT)
+
+
+def contexts_in(folder):
+    """{path: the context in it}"""
+    return {path: context_in(path) for path in sorted((folder / "contexts").glob("*.json"))}
+
+
+def settings_in(path):
+    """{part: its settings} of a profile. Which they must be depends on the part's plan, and a set may be older than that."""
+    return read_yaml(path, parts={...: {"seconds": float}})["parts"]
 
 
 @dataclass(frozen=True)
@@ -25,7 +46,15 @@ class Folder:
 
     facts = cached_property(lambda self: facts_of(self.folder))
     context = property(lambda self: self.facts["context"])
-    registry = cached_property(lambda self: Registry(read_object(self.folder / "registry.json", implementations=list)))
+    registry = cached_property(lambda self: Registry(read_object(self.folder / "registry.json", **REGISTRY)))
+
+    def need_whole(self):
+        """StudyError naming a file that is damaged, before anything is made of the set; the Folder itself."""
+        known = settings_in(self.folder / "profile.yaml")
+        if missing := [part for part in self.facts["parts"] if part not in known]:
+            raise damaged(self.folder / "profile.yaml", f"parts: {missing[0]} is missing")
+        _ = self.registry, contexts_in(self.folder)
+        return self
 
 
 @dataclass(frozen=True)
@@ -36,7 +65,4 @@ class View(Folder):
     def settings(self):
         """The profile's of this part."""
         path = self.folder / "profile.yaml"
-        try:
-            return from_yaml(path.read_text(encoding="utf-8"))["parts"][self.part]
-        except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError) as error:
-            raise StudyError(f"{path} is damaged: {' '.join(str(error).split())[:200]}") from error
+        return need_kind(path, settings_in(path), {self.part: dict})[self.part]

@@ -123,12 +123,11 @@ function fillError(found, state) {
     return void target.append(element("p", {}, found.error ? `Nobody of those that are left was seen to reach ${short(state.error)} m.`
                                                            : "No errors were measured in this set."));
   const {curve, ranking} = found.error, name = (point) => `${point.name}, ${point.setting}, step ${short(1e3 * point.step)} ms`;
-  const equal = new Set(ranking.equivalent), group = (point) => point === ranking.winner ? "fastest" : equal.has(point) ? "as fast" : "slower";
   const raw = (point) => [["process", "s a simulated second", "record"],
     ...curve.rounds.filter((row) => row.point === point && row.seconds !== null).map((row) => [String(row.process), short(row.seconds, 5), ""]),
     ["–", `${short(point.time, 5)} (${point.from})`, point.record.split(" ").map((one) => `raw/accuracy/${one}`).join("\n")]];
   const rows = (ranking.ratios.length ? ranking.ratios : [[ranking.winner, ONE]]).map(([point, one]) => ({
-    ...one, point, name: name(point), colour: colourOf(point.name), group: group(point), text: times(one), raw: () => raw(point)}));
+    ...one, point, name: name(point), colour: colourOf(point.name), group: groupOf(ranking, point), text: times(one), raw: () => raw(point)}));
   found.errorRows = rows;
   fillRanking(target, "points-0", `An error of at most ${short(state.error)} m on ${curve.title} (n = ${short(curve.n)}, fill ${short(curve.fill)} %)`,
               `The nearest motion whose error is known. ${ranking.settled ? "" : "Not decided. "}${ranking.candidates} points reach it. `
@@ -171,7 +170,8 @@ function fillAnswer(found, state) {
     lines.push([`A deadline of ${short(state.deadline)} µs is ${short(state.deadline / step)} times the mean step of the fastest`
                 + `${state.deadline > step ? "; single steps take several times the mean" : ": too short"} (`,
                 element("a", {href: "realtime.html"}, "distribution"), ")."]);
-  if (point) lines.push([`For ${short(state.error)} m on ${found.error.curve.scene}: `, bold(point.name), `, ${point.setting}, step ${short(1e3 * point.step)} ms.`]);
+  if (point) lines.push([`For ${short(state.error)} m on ${found.error.curve.scene}: `, bold(point.name),
+                         `, ${point.setting}, step ${short(1e3 * point.step)} ms${found.error.ranking.settled ? "" : " (not decided)"}.`]);
   place("answer").replaceChildren(...lines.map((line) => element("p", {}, ...line)), ...found.warnings.map((one) => element("p", {class: "warn"}, one)));
 }
 
@@ -196,10 +196,12 @@ function commandsOf(found, state) {
   if (!ranking) return {lines, note: ""};
   const lead = ranking.ratios.slice(0, 4).map(([name]) => name), form = found.form === "saddle-point" ? " --scheme saddle-point" : "";
   lines.push(`build/mbs bench ${word} --implementation=${lead.join(",")}${form}`);
-  const best = found.error?.ranking?.winner;
-  lines.push(best ? `build/mbs simulate ${word} --implementation ${best.name} ${DATA.settings[best.setting] ?? ""} --step ${best.step}`.replace(/ {2,}/g, " ")
-                  : `build/mbs simulate ${word} --implementation ${ranking.winner}${form}`);
+  const best = found.error?.ranking?.winner, there = best && found.error.curve.scene === scene;  // elsewhere its step says nothing
+  const simulate = `build/mbs simulate ${word} --implementation`;
+  if (there) lines.push(`${simulate} ${best.name} ${DATA.settings[best.setting] ?? ""} --step ${best.step}`.replace(/ {2,}/g, " "));
+  else if (!state.error) lines.push(`${simulate} ${ranking.winner}${form}`);
   lines.push(`study/advise ${word} --error ${state.error ?? 1e-3}` + (state.deadline ? ` --deadline-us ${state.deadline}` : "")
              + (state.no.length || state.without.length ? ` --only ${lead.join(" ")}` : ""));
-  return {lines, note};
+  const whose = `The step above that reaches ${short(state.error)} m was measured on ${found.error?.curve.scene}; study/advise finds yours.`;
+  return {lines, note: [note, best && !there ? whose : ""].filter(Boolean).join(" ")};
 }

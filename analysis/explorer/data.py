@@ -10,7 +10,7 @@ import pandas
 
 from analysis.accuracy import points as accuracy
 from analysis.accuracy.subjects import columns
-from analysis.accuracy.winners import meeting
+from analysis.accuracy.winners import cut, meeting
 from analysis.core import records, schema, timing
 from analysis.core.contest import by_scene, grouped
 from analysis.core.files import read_object
@@ -74,7 +74,8 @@ def of_map(folder):
                           lambda names, scene=scene: results.rank(scene, names), results.beyond(scene))
 
 
-Curve = namedtuple("Curve", "subject scene title unit n fill points rounds")  # a scene whose runs were judged: its points with error and time
+# A scene whose runs were judged: its points with error and time; of which curves the budget left out finer values.
+Curve = namedtuple("Curve", "subject scene title unit n fill points rounds cut")
 
 
 def of_accuracy(folder):
@@ -87,7 +88,7 @@ def of_accuracy(folder):
         known, mine = about.loc[subject], meeting(rows, numpy.inf)
         if len(mine):
             yield Curve(subject, scene, known.title, known.unit, rows.variables.max(), 100 * rows.fill.dropna().median(), mine,
-                        accuracy.rounds(rows, timed))
+                        accuracy.rounds(rows, timed), cut(tables["points"][tables["points"].subject == subject], scene))
 
 
 def read(folder):
@@ -114,7 +115,7 @@ def _mechanisms(folder):
 def names_of(found):
     """Every name that takes part in something, anchors of other environments included."""
     return [name for part in ("families", "map") for one in found[part] for name in (*one.rows.implementation, *one.lost, *one.look)] + [
-        name for one in found["accuracy"] for name in one.points.implementation]
+        name for one in found["accuracy"] for name in (*one.points.implementation, *(ended[0] for ended in one.cut))]
 
 
 def _contest(one, number):
@@ -139,6 +140,7 @@ def _curve(one, number):
             for row in one.rounds.itertuples() if row.implementation in labels]
     return one._asdict() | {
         "family": family_of(one.scene), "rounds": rows,
+        "cut": [[number[name], setting, _known(error), _known(time)] for name, setting, error, time in one.cut],
         "points": [[number[row.implementation], row.setting, row.step, *map(_known, (row.error, row.time, row.time_low, row.time_high)),
                     row.time_from if isinstance(row.time_from, str) else None, row.record] for row in points.itertuples(index=False)]}
 

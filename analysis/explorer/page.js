@@ -169,13 +169,15 @@ const cell = (value) => {
 
 function asCsv() {
   const {set, near, rows, predicted, form, asked, error, errorRows} = shown, common = [set.machine, set.commit];
-  const lines = [["kind", "machine", "commit", "scene", "form", "n", "contender", "group", "ratio", "low", "high", "step_us", "yours_us"]];
-  near.forEach(({contest}, i) => rows[i].forEach((row) => lines.push(["measured", ...common, contest.scene, contest.form, contest.n, row.name, row.group,
-                                                                       row.value, row.low, row.high, row.step, row.own?.us])));
+  const lines = [["kind", "machine", "commit", "scene", "form", "n", "contender", "group", "ratio", "low", "high", "step_us", "yours_us", "settled"]];
+  near.forEach(({contest, ranking}, i) => rows[i].forEach((row) => lines.push([
+    "measured", ...common, contest.scene, contest.form, contest.n, row.name, row.group, row.value, row.low, row.high, row.step, row.own?.us,
+    String(ranking.settled)])));
   for (const row of predicted)  // ratios are of no use there: low and high are of the time
-    lines.push(["interpolated", ...common, asked.scene, form, asked.n, row.name, "", "", row.low, row.high, row.value, ""]);
+    lines.push(["interpolated", ...common, asked.scene, form, asked.n, row.name, "", "", row.low, row.high, row.value, "", ""]);
   for (const {point, group, value, low, high} of errorRows ?? [])
-    lines.push(["error", ...common, error.curve.scene, point.setting, error.curve.n, point.name, group, value, low, high, 1e6 * point.time * point.step, ""]);
+    lines.push(["error", ...common, error.curve.scene, point.setting, error.curve.n, point.name, group, value, low, high,
+                1e6 * point.time * point.step, "", String(error.ranking.settled)]);
   return lines.map((row) => row.map(cell).join(",")).join("\n") + "\n";
 }
 

@@ -25,6 +25,7 @@ for (const set of DATA.sets) {
     one.points = one.points.map(([place, setting, step, error, time, low, high, from, record]) =>
       ({name: name(place), setting, step, error, time, low, high, from, record}));
     one.rounds = one.rounds.map(([place, process, status, seconds]) => ({point: one.points[place], process, status, seconds}));
+    one.cut = one.cut.map(([place, setting, error, time]) => ({name: name(place), setting, error: error ?? Infinity, time}));
   }
 }
 
@@ -68,7 +69,8 @@ function distance(one, asked) {
 // of the case itself, or those on both sides of it in its family, or the two nearest.
 function answer(state) {
   const set = setOf(state), names = chosen(state), asked = caseOf(state);
-  const found = {set, asked, names, form: forms(state)[0] ?? null, near: [], predicted: [], features: null, error: null, warnings: []};
+  const found = {set, asked, names, form: forms(state)[0] ?? null, near: [], predicted: [], features: null, error: null,
+                 warnings: [...(state.mine?.warnings ?? [])]};
   const told = asked.features?.n > 0 || asked.fill || asked.family && !asked.family.includes("filled");  // by n alone none is the case
   for (const form of forms(state)) {
     const ranked = set.contests.filter((one) => one.form === form && (!asked.family || one.family === asked.family))
@@ -147,8 +149,8 @@ function predicted(set, features, form, names) {
 // Of a product of features, such as "n*n", "passes*flops" or "1".
 const amountOf = (product, features) => product.split("*").reduce((amount, one) => amount * (features[one] ?? Number(one)), 1);
 
-const PLAIN = {n: "n", fill: "fill of the tangent", per_column: "non-zeros a column of the factor", flops: "operations of a factorization",
-               tangent: "non-zeros of the tangent"};
+const PLAIN = {__proto__: null, n: "n", fill: "fill of the tangent", per_column: "non-zeros a column of the factor",
+               flops: "operations of a factorization", tangent: "non-zeros of the tangent"};
 
 function warnings(state, asked, features, contests) {
   const found = [...(state.mine?.warnings ?? [])];
@@ -171,12 +173,12 @@ function warnings(state, asked, features, contests) {
 function answerError(state, set, asked, names) {
   const far = (one) => distance(one, {...asked, features: null});
   const [curve] = set.curves.filter((one) => one.unit === "m").sort((a, b) => far(a) - far(b));
-  return curve ? {curve, ranking: rankPoints(curve, pointsOf(state, curve, names))} : null;
-}
-
-function pointsOf(state, curve, names) {
-  const form = (setting) => setting.startsWith("saddle") ? "saddle" : /^(rattle|multistep)/.test(setting) ? "" : "penalty";
-  return curve.points.filter((one) => names.has(one.name) && one.error <= state.error && !state.no.includes(form(one.setting)));
+  const left = ({setting}) => !state.no.includes(setting.startsWith("saddle") ? "saddle" : /^(rattle|multistep)/.test(setting) ? "" : "penalty");
+  const layers = new Set([...names].map((name) => ABOUT.get(name).own));  // a curve is the setting's: whoever of its layer made it
+  if (!curve) return null;
+  const points = curve.points.filter((one) => names.has(one.name) && one.error <= state.error && left(one));
+  const cut = curve.cut.filter((one) => layers.has(ABOUT.get(one.name).own) && one.error > state.error && left(one));
+  return {curve, ranking: rankPoints(curve, points, cut)};
 }
 
 // µs a step of a contender in a contest: the median over processes of the medians over samples.

@@ -23,7 +23,10 @@ function readScene(text) {
 }
 
 function readDescribed(found) {
-  const warnings = [...list(found.warnings)];
+  const outside = list(found.rule?.outside).map((name) => PLAIN[name] ?? name), warnings = [...list(found.warnings)];
+  if (outside.length)  // before others, of which there may be too many
+    warnings.unshift(`the scene lies outside of all that the rule of mbs describe was fitted on (${outside.slice(0, 5).join(", ")}`
+                     + `${outside.length > 5 ? ` and ${outside.length - 5} more` : ""}): its times are extrapolated`);
   if (found.singular_start) warnings.push("the scene starts in a singular position");
   const able = list(found.recommendation).map((one) => one?.implementation), form = found.scheme?.take ?? FORMS[0];
   // Of whom the rule has no times, the recommendation says nothing.

@@ -137,8 +137,8 @@ function rankContest(contest, names) {
 }
 
 // Of points of error and time (analysis/accuracy/winners.py): each contender counts with its fastest point, one of the rounds
-// where it has one there; null if nobody meets the error.
-function rankPoints(curve, points) {
+// where it has one there; null if nobody meets the error. `cut`: curves that the budget ended before they met it.
+function rankPoints(curve, points, cut = []) {
   const first = new Map(), label = (point) => `${point.name}|${point.setting}|${point.step}`;
   const sorted = [...points].sort((a, b) => a.time - b.time);
   for (const point of sorted) if (point.from === "rounds" && !first.has(point.name)) first.set(point.name, point);
@@ -149,9 +149,10 @@ function rankPoints(curve, points) {
   const byLabel = new Map(sorted.map((point) => [label(point), point]));
   const found = curve.paired.rank(new Set([...first.values()].map(label).filter((one) => !lost.has(one))));
   const winner = found ? byLabel.get(found.winner) : sorted[0];
-  const waiting = sorted.some((point) => point.time <= DATA.near * winner.time && !first.has(point.name));
+  const waiting = cut.some((one) => one.time < winner.time)
+    || sorted.some((point) => point.time <= DATA.near * winner.time && !first.has(point.name));
   const ratios = found ? found.ratios.map(([one, ratio]) => [byLabel.get(one), ratio]) : [];
+  const pointsOf = (labels) => labels.filter((one) => one !== found.winner).map((one) => byLabel.get(one));
   return {winner, ratios, decided: !!found && found.decided && !waiting, settled: !!found && found.settled && !waiting,
-          equivalent: found ? found.equivalent.filter((one) => one !== found.winner).map((one) => byLabel.get(one)) : [],
-          candidates: sorted.length};
+          equivalent: pointsOf(found?.equivalent ?? []), open: pointsOf(found?.open ?? []), candidates: sorted.length};
 }

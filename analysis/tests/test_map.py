@@ -182,7 +182,7 @@ def test_records_become_tables_and_a_page(tmp_path):
         records.write(tmp_path / "raw" / "map" / one.name, data)
     known = registry([A], [B, C, OWN], [OWN])
     write_json(tmp_path / "registry.json", known.listed)
-    (tmp_path / "profile.yaml").write_text(json.dumps({"parts": {"map": {"columns": [{"variables": 10, "fills": ["natural"]}]}}}))
+    (tmp_path / "profile.yaml").write_text(json.dumps({"parts": {"map": {"seconds": 1, "columns": [{"variables": 10, "fills": ["natural"]}]}}}))
     context = dict.fromkeys(("machine", "commit", "compiler", "flags", "cpu_model", "kernel"), "x") | {"num_cpus": 2, "libraries": "L 1", "dirty": "false"}
     write_json(tmp_path / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "context": context, "date": "today",
                                        "programs": {}})

@@ -3,7 +3,7 @@ from analysis.accuracy.subjects import columns as listed
 from analysis.core.files import StudyError
 from study.accuracy import pairs, work
 
-SETTINGS = {"duration": float, "longest": float, "processes": list, "settings": list, "errors": list, "columns": list}
+SETTINGS = {"duration": float, "longest": float, "processes": [int], "settings": [str], "errors": [float], "columns": [dict]}
 
 
 def columns(settings):

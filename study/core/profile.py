@@ -2,12 +2,11 @@
 import importlib
 from collections import namedtuple
 
-import yaml
-
-from analysis.core.files import ROOT, StudyError, from_yaml, read_bytes
+from analysis.core.files import MEND, ROOT, StudyError, misfit, need_kind, read_yaml
 from analysis.core.parts import parts
 
 FOLDER = ROOT / "study" / "profiles"
+MENDED = f"{FOLDER.relative_to(ROOT) / 'quick.yaml'} explains every setting"
 STARTED, DRAWN = 4.5, 0.015  # s around the columns of a part, about: its process and pages; for each second of theirs, the last cells
 
 
@@ -29,13 +28,12 @@ def load(name, chosen=None):
 def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind. A set may be older than a part:
     its profile needs the `chosen` ones."""
-    try:
-        data = from_yaml(read_bytes(path).decode())
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise StudyError(f"{path}: not valid YAML: {' '.join(str(error).split())[:300]}") from error
+    mend = MENDED if path.parent == FOLDER else MEND
+    data = read_yaml(path, mend)
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")
+    need_kind(path, data, {"title": str, "blas": {...: str}, "dropped": str}, mend)
     more = data["parts"].keys() if chosen is not None and isinstance(data["parts"], dict) else ()
     need_keys(path, "parts", data["parts"], {*(parts() if chosen is None else chosen), *more})
     for part in parts() if chosen is None else chosen:
@@ -43,8 +41,10 @@ def read(path, name, chosen=None):
         need_keys(path, part, settings, set(wanted))
         for key, kind in wanted.items():
             where, value = f"{path}: {part}: {key}", settings[key]
-            if not isinstance(value, (int, float) if kind is float else kind) or isinstance(value, bool) != (kind is bool):
-                raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
+            outer = kind if isinstance(kind, type) else type(kind)
+            if misfit(value, outer):
+                raise StudyError(f"{where} must be of type {outer.__name__}, is {value!r}")
+            need_kind(path, settings, {key: kind}, mend)
             if kind in (int, float) and not 0 <= value < float("inf"):
                 raise StudyError(f"{where} must be a number of at least 0, is {value!r}")
     return Profile(name, data["title"], data["blas"], data["dropped"], data["parts"])

@@ -11,7 +11,7 @@ from analysis.core.files import ROOT, StudyError, digest, read_object, write_jso
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.schema import need_unchanged
-from analysis.core.view import Folder, facts_of
+from analysis.core.view import Folder, context_in, facts_of
 from study.core import executor, locks, profile as profiles
 from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of
@@ -29,12 +29,12 @@ class StudySet(Folder):
         path = self.folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
         if not path.exists():
             write_json(path, context_of(one))
-        return read_object(path)
+        return context_in(path)
 
     def need_programs(self, names):
         """StudyError naming a program (Cell.built) that changed since the set's records were made; notes new ones."""
         known = self.facts["programs"]
-        found = {name: digest(path)[:16] for name in names for path in [ROOT / program_of(*name.split("@"))] if path.exists()}
+        found = {name: digest(path)[:16] for name in names for path in [ROOT / program_of(*name.split("@", 1))] if path.exists()}
         if set(found) - set(known):
             with locks.noting(self.folder):  # other nodes of a cluster note theirs
                 known.update(facts_of(self.folder)["programs"])
@@ -94,13 +94,13 @@ def _said(cell):
 
 
 def opened(folder):
-    """The StudySet in a folder; StudyError if it holds none, or one without parts."""
+    """The StudySet in a folder; StudyError if it holds none, or one that is damaged or without parts."""
     if not (folder / "set.json").exists():
         raise StudyError(f"{folder} holds no set (no set.json)")
     found = StudySet(folder)
     if not found.facts["parts"]:
         raise StudyError(f"{folder / 'set.json'} has no parts: it is damaged, or of a tool's records")
-    return found
+    return found.need_whole()
 
 
 def sets_in(*bases):

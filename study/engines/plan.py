@@ -15,7 +15,7 @@ from study.core.cell import Cell
 from study.core.curves import Curve, follow
 from study.core.setting import read_settings
 
-SETTINGS = {"subjects": list, "engine_settings": int, "implementations": list, "settings": list, "time_limit": float, "rounds": int}
+SETTINGS = {"subjects": [str], "engine_settings": int, "implementations": [str], "settings": [str], "time_limit": float, "rounds": int}
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
 REPEATS = 5          # of such a run in one process, theirs as ours; the least time of each of its pieces counts

@@ -5,7 +5,8 @@ from analysis.extremes import battery as table, cells, judge, trials
 from study.core.cell import REFERENCE, Cell
 from study.core.profile import by_share
 
-SETTINGS = {"implementations": dict, "everyone": bool, "trials": dict, "cells": int, "processes": int, "limit": float}
+SETTINGS = {"implementations": {"forms": [str], "others": [str], "trials": [str]}, "everyone": bool, "trials": {"standard": int, "others": int},
+            "cells": int, "processes": int, "limit": float}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 
 

@@ -7,7 +7,7 @@ from study.core.cell import Cell
 from study.core.contest import Form, about, contests, controls_of, elsewhere, times_of, usual
 from study.core.setting import Setting
 
-SETTINGS = {"scenes": list, "processes": dict, "samples": int}
+SETTINGS = {"scenes": [str], "processes": {...: int}, "samples": int}
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long

@@ -11,7 +11,7 @@ from study.core.setting import Setting
 from study.core.timing import measure
 from study.scenes.problems import read_list
 
-SETTINGS = {"loops": list, "large": list, "problems": list, "examples": list, "fills": list, "batches": list, "sets": list, "swept": int,
+SETTINGS = {"loops": [int], "large": [int], "problems": [str], "examples": [str], "fills": [float], "batches": [int], "sets": [int], "swept": int,
             "patience": float, "processes": int, "samples": int}
 FIRST = ("--start", 0, "--steps", 40, "--patience", 1)  # the same passes at all sizes
 BATCH_S = 0.02  # a process of batches lasts about ten times that

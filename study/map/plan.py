@@ -7,8 +7,11 @@ from study.core.profile import need_keys
 from study.core.timing import measure
 from study.map.timed import NATURAL, Scene, TimedScene, alternatives, fit
 
-SETTINGS = {"processes": int, "process": float, "again": int, "slower": dict, "limits": dict, "alternatives": list, "phases": dict,
-            "operations": dict, "seeds": dict, "columns": list}
+SIZES = {"columns": [int], "processes": int}
+SETTINGS = {"processes": int, "process": float, "again": int, "slower": {"natural": float, "filled": float},
+            "limits": {"pilot": float, "check": float, "time": float}, "alternatives": [{"implementations": [str], "blas": [str], "columns": [int]}],
+            "phases": SIZES, "operations": SIZES, "seeds": SIZES | {"seeds": int},
+            "columns": [{"variables": int, "seconds": float, "fills": [(str, float)], "slower?": float}]}
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 

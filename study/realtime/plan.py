@@ -8,7 +8,7 @@ from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
 
-SETTINGS = {"implementations": list, "others": bool, "schemes": list, "steps": list, "loops": list, "duration": float, "pilot": float,
+SETTINGS = {"implementations": [str], "others": bool, "schemes": [str], "steps": [float], "loops": [int], "duration": float, "pilot": float,
             "most": int}
 GRID = sorted({round(2 ** (power / 4)) for power in range(60)})  # the sizes of the search
 JUMP = 8             # places on the grid, of the search's first steps: a factor of four

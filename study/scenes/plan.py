@@ -4,7 +4,7 @@ from study.core.profile import by_share
 from study.scenes import metric, modelling
 from study.scenes.problems import compared_of, read_list
 
-SETTINGS = {"problems": list, "loops": list, "rounds": int, "samples": int}
+SETTINGS = {"problems": [str], "loops": [int], "rounds": int, "samples": int}
 CHECK_S, RUN_S = 120, 600  # limits of a process
 
 

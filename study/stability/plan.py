@@ -3,7 +3,7 @@ from study.core.cell import Cell
 from study.core.profile import by_share
 from study.core.setting import Setting
 
-SETTINGS = {"loops": list, "powers": list, "decades": list, "duration": float, "whole": dict}
+SETTINGS = {"loops": [int], "powers": [float], "decades": [float], "duration": float, "whole": {...: [int]}}
 IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "compiled_ldl/fronts"}
 FORMS = ("penalty", "saddle-point")
 STEP, WHOLE = 1.25e-3, 20.0

@@ -1,6 +1,8 @@
 # study/add on a small set that was made by hand and the fake `mbs`: who changes hands, what is refused, what is kept.
+import random
 import shutil
 import tempfile
+from types import SimpleNamespace
 
 import pandas
 import pytest
@@ -8,12 +10,16 @@ import pytest
 from analysis.core import records, schema
 from analysis.core.files import StudyError, digest, read_json, write_json
 from analysis.core.registry import Registry
+from analysis.core.timing import NO_VARIANCE
+from analysis.core.view import View
+from analysis.map.results import Results
 from study.core.cell import CONTROL, Contender
 from study.core.lab import Lab
 from study.core.studyset import StudySet, context_of, listed
 from study.core.timing import measure as timed
 from study.tests.conftest import FAKE, ROOT, TEMPORARY
 from study.tools import add, shelf
+from study.tools.merge import machine
 
 pytestmark = pytest.mark.slow
 NEW = "new_one/only"
@@ -34,6 +40,7 @@ def folder(tmp_path, monkeypatch):
         write_json(folder / "contexts" / f"own-{pair}.json", context)
     write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["families", "map"], "programs": {}, "context": context,
                                      "date": "2026-01-01 10:00"})
+    write_json(folder / "registry.json", listed().listed)
     (folder / "profile.yaml").write_text((ROOT / "study" / "profiles" / "smoke.yaml").read_text())
     rows = {"families": [], "map": []}
     for part, scene, scheme, words in CONTESTS:
@@ -88,6 +95,52 @@ def test_all_take_turns_in_the_same_processes_and_records_have_digests(folder, m
     turns = [one for one in found.values() if one.role == "time"]
     assert len(turns) == 9 and all(one.cell["contenders"] == [NEW, *LED] for one in turns)
     assert {one.role for one in found.values()} == {"time", "gate"}
+
+
+def test_on_artificial_fill_the_interval_is_that_for_other_seeds(folder, monkeypatch):
+    """As the set's map has it (analysis/map/results.py); at a mechanism's own fill it is that of the processes alone."""
+    draw = random.Random(1)
+    row = lambda name, process, us, **more: {"implementation": name, "environment": "own", "process": process, "status": "ok", "step_us": us, **more}
+    seeds = pandas.DataFrame([
+        row(name, process, us, scene=f"four-bar:10,fill=0.4,seed={seed}", kind="seeds", variables=22, fill_asked=0.4, record="r",
+            samples_us=f"{us * (1 + 0.1 * seed * (name == LED[0]))}") for seed in (1, 2, 3) for process in (1, 2)
+        for name, us in ((LED[0], 1.0), (LED[1], 2.0))])
+    schema.write_tables(folder, "map", {name: schema.read_table(folder, "map", name) for name in schema.of_part("map")} | {"tidy": seeds},
+                        records.read_part(folder, "map"))
+    beyond = machine.of_seeds(StudySet(folder))
+    assert beyond[0] > 0 and beyond == Results({"tidy": schema.read_table(folder, "map", "tidy")}, View(folder, "map"))._of_seeds
+    timed = pandas.DataFrame([row(name, process, us, steps=9.0, start=0.0, passes=9, reason="", samples=(us * draw.uniform(0.99, 1.01),))
+                              for process in (1, 2, 3, 4) for name, us in ((NEW, 0.97), (LED[0], 1.0))])
+    monkeypatch.setattr(add.timing, "processes", lambda found: timed)
+    monkeypatch.setattr(add.timing, "counted", lambda found: found)
+    [led] = pandas.DataFrame([{"layer": "all", "winner": LED[0], "second": LED[1]}]).itertuples()
+
+    def compared(more):
+        contest = add.Contest("map", "four-bar:10,fill=0.4", "penalty", 22, [led], (), (), 9.0, 0.0, {}, [NEW], more)
+        [found] = add._rows(contest, SimpleNamespace(own=()), {NEW: ("ok", "")}, [SimpleNamespace(name="one")])
+        return found
+    here, elsewhere = compared(NO_VARIANCE), compared(beyond)
+    assert elsewhere["low"] < here["low"] < here["ratio"] == elsewhere["ratio"] < here["high"] < elsewhere["high"]
+    assert here["hands"] == "changes" and elsewhere["hands"] == "open" and here["chance"] < 0.05 < elsewhere["chance"]
+
+
+def test_artificial_fill_alone_has_the_variance_between_seeds(folder, monkeypatch):
+    monkeypatch.setattr(machine, "of_seeds", lambda _: (0.1, 3))
+    rows = schema.read_table(folder, "map", "cells").assign(scene=lambda rows: rows.scene.replace("four-bar:4", "four-bar:4,fill=0.9"))
+    schema.write_tables(folder, "map", {name: schema.read_table(folder, "map", name) for name in schema.of_part("map")} | {"cells": rows},
+                        records.read_part(folder, "map"))
+    found = {one.scene: one.beyond for one in add.contests(StudySet(folder), [LED[0]], listed())}
+    assert found == {"four-bar:4,fill=0.9": (0.1, 3), "four-bar:10": NO_VARIANCE, "four-bar:6": NO_VARIANCE}
+
+
+def test_what_is_asked_at_once_is_held_to_that(tmp_path, capsys):
+    rows = [{"part": "map", "scheme": "penalty", "layer": layer, "chance": chance, "decided": chance < 0.05, "holm": False, "status": "ok", "rival": "a",
+             "hands": "changes" if chance < 0.05 else "open"} for layer, chances in (("all", (0.001, 0.03, 0.04, 0.5)), ("libraries", (0.04,)))
+            for chance in chances]
+    found = add.at_once([*rows, {"part": "map", "scheme": "penalty", "layer": "all", "status": "dropped", "hands": "not timed"}])
+    assert [row["holm"] for row in found[:-1]] == [True, False, False, False, True] and "holm" not in found[-1]
+    add.tell(shelf.table(found, "added"), tmp_path, NEW)
+    assert "4 cells change hands, 1 are open, 0 stay, 1 were not timed; asked all at once 2 change hands" in capsys.readouterr().out
 
 
 def test_a_slower_newcomer_changes_nothing(folder, monkeypatch):

@@ -1,6 +1,7 @@
 # The common layer: cells and their identity, records and their digests, the lab, schemas, sets, locks, profiles.
 import errno
 import fnmatch
+import functools
 import json
 import math
 import os
@@ -17,9 +18,10 @@ import matplotlib.pyplot as plt
 import numpy
 import pandas
 import pytest
+import yaml
 
 from analysis.core import records, schema, site
-from analysis.core.files import ROOT, StudyError, digest, read_json, read_object, write_json, write_text
+from analysis.core.files import MEND, ROOT, StudyError, digest, read_json, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.style import save
@@ -273,7 +275,7 @@ def test_a_program_may_come_anew_but_not_change(mbs, tmp_path):
     write_json(tmp_path / "set.json", FACTS)
     (tmp_path / ".scratch").mkdir()
     known = studyset.StudySet(tmp_path)
-    write_json(tmp_path / "contexts" / "own-system.json", {"machine": "m1"})
+    write_json(tmp_path / "contexts" / "own-system.json", CONTEXT)
     Lab(known, "part", "column").run(cells(1))
     known.need_programs(["mbs", "study/engines/engine_that_is_not_built"])
     assert set(facts_of(tmp_path)["programs"]) == {"mbs"}
@@ -430,7 +432,8 @@ def test_a_schema_without_records_is_refused(tmp_path, monkeypatch):
 
 # Sets, profiles, files
 
-FACTS = {"profile": "quick", "only": [], "parts": ["map"], "programs": {}, "context": {"machine": "m1"}, "date": "today"}
+CONTEXT = dict.fromkeys(("machine", "commit", "cpu_model", "kernel", "compiler", "flags"), "m1") | {"dirty": "false", "num_cpus": 2}
+FACTS = {"profile": "quick", "only": [], "parts": ["map"], "programs": {}, "context": CONTEXT, "date": "today"}
 
 
 @pytest.mark.parametrize("key", FACTS)
@@ -453,6 +456,48 @@ def test_a_set_of_parts_that_are_none_is_named_before_anything_else(tmp_path, mo
     assert told.out == "" and "set.json" in told.err and words in told.err and told.err.count("\n") == 1
 
 
+def without(*path):
+    """Takes a value out of JSON or YAML: what is left is whole, but for that."""
+    def change(content):
+        data = yaml.safe_load(content)
+        *outer, last = path
+        del functools.reduce(lambda inner, key: inner[key], outer, data)[last]
+        return json.dumps(data).encode()
+    return change
+
+
+BROKEN = {"empty": lambda content: b"", "a list": lambda content: b"[]", "a number": lambda content: b"3", "no UTF-8": lambda content: b"\xff\xfe" + content,
+          "cut": lambda content: content[:len(content) // 9], "deep": lambda content: b"- " * 3000 if content.startswith(b"#") else b"[" * 3000}
+DAMAGES = [*((file, name, change) for file in ("set.json", "registry.json", "profile.yaml", "contexts/own-system.json") for name, change in BROKEN.items()),
+           *((file, f"without {path[-1]}", without(*path)) for file, path in (
+               ("set.json", ("context",)), ("set.json", ("context", "commit")), ("registry.json", ("implementations",)),
+               ("registry.json", ("implementations", 0, "variants", 1, "name")), ("profile.yaml", ("parts",)), ("profile.yaml", ("parts", "map")),
+               ("profile.yaml", ("parts", "map", "seconds")), ("contexts/own-system.json", ("machine",)))),
+           ("registry.json", "a context", lambda content: json.dumps(CONTEXT).encode()),
+           ("registry.json", "terms", lambda content: content.replace(b'"kept"', b"3")), ("set.json", "names", lambda content: content.replace(b"[]", b"[3]")),
+           ("profile.yaml", "a date", lambda content: content.replace(b"title: ", b"title: 2020-99-99 #"))]
+
+
+@pytest.mark.parametrize("file, change", [pytest.param(file, change, id=f"{file}: {name}") for file, name, change in DAMAGES])
+def test_a_damaged_set_is_one_line_and_nothing_is_written(tmp_path, monkeypatch, capsys, file, change):
+    folder = tmp_path / "set"
+    write_json(folder / "set.json", FACTS | {"profile": "smoke"})
+    write_json(folder / "registry.json", REGISTRY.listed)
+    write_json(folder / "contexts" / "own-system.json", CONTEXT)
+    shutil.copyfile(profile.FOLDER / "smoke.yaml", folder / "profile.yaml")
+    studyset.opened(folder)
+    for where, name, stub in ((child, "end_on_signals", lambda: None), (main, "set_up", lambda log: None), (tempfile, "tempdir", TEMPORARY.name),
+                              (studyset, "listed", lambda: REGISTRY), (studyset, "context_of", lambda one: CONTEXT)):
+        monkeypatch.setattr(where, name, stub)
+    (folder / file).write_bytes(change((folder / file).read_bytes()))
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    for command, *words in (["run", "--profile", "smoke", "--part", "map", "--wait", "--results"], ["figures"], ["store"], ["paper", "--claims"],
+                            ["merge", "--to", tmp_path / "merged", tmp_path / "set"], ["add", "one", "--to"]):
+        code, said = main.main([command, *map(str, words), str(folder)]), capsys.readouterr().err
+        assert code == 2 and said.startswith(f"study/{command}: {folder / file} is damaged (") and MEND in said and said.count("\n") == 1, (command, said)
+        assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file() and path.name != ".lock"} == before, command
+
+
 @pytest.mark.parametrize("content", [b"", b"[]", b"3", b"\xff\xfe", b"[" * 100000, b'{"a": '])
 def test_what_is_no_object_is_named(tmp_path, content):
     (tmp_path / "one.json").write_bytes(content)
@@ -463,9 +508,8 @@ def test_what_is_no_object_is_named(tmp_path, content):
 @pytest.mark.parametrize("text", ["", "3", "parts: 3", "parts: {map: }", "\0", "a: [", "parts: {other: {}}"])
 def test_a_damaged_profile_of_a_set_is_named(tmp_path, text):
     (tmp_path / "profile.yaml").write_text(text)
-    if text != "parts: {map: }":
-        with pytest.raises(StudyError, match="profile.yaml is damaged"):
-            View(tmp_path, "map").settings
+    with pytest.raises(StudyError, match="profile.yaml is damaged"):
+        View(tmp_path, "map").settings
     with pytest.raises(StudyError, match="profile.yaml"):
         profile.read(tmp_path / "profile.yaml", "one")
 
@@ -490,14 +534,27 @@ def test_what_a_profile_takes_is_what_it_promises(name, minutes):
     (lambda data: data["parts"].update(stability=[]), "stability needs settings"),
     (lambda data: data["parts"]["stability"].update(seconds="10"), "seconds must be of type float"),
     (lambda data: data["parts"]["stability"].update(seconds=float("inf")), "must be a number of at least 0"),
-    (lambda data: data["parts"]["stability"].pop("loops"), "missing or unknown: loops")])
+    (lambda data: data["parts"]["stability"].pop("loops"), "missing or unknown: loops"), (lambda data: data.update(title=[1]), "title is of another type"),
+    (lambda data: data.update(blas={"all": [1]}), "blas: all is of another type"),
+    (lambda data: data["parts"]["stability"].update(powers=["1e-3"]), "powers: entry 1 is of another type"),
+    (lambda data: data["parts"]["stability"].update(whole={"penalty": 3}), "whole: penalty is no list")])
 def test_a_wrong_profile_is_one_line(tmp_path, change, words):
-    import yaml
     data = yaml.safe_load((profile.FOLDER / "smoke.yaml").read_text())
     change(data)
     (tmp_path / "one.yaml").write_text(yaml.safe_dump(data))
     with pytest.raises(StudyError, match=words):
         profile.read(tmp_path / "one.yaml", "one", ["stability"])
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"a: [", b"a: 2020-99-99", b"!!bool foo", b"!!int ''", b"!!timestamp x"])
+def test_a_damaged_profile_of_a_user_is_one_line(tmp_path, monkeypatch, capsys, content):
+    monkeypatch.setattr(child, "end_on_signals", lambda: None)
+    monkeypatch.setattr(profile, "FOLDER", tmp_path)
+    (tmp_path / "mine.yaml").write_bytes(content)
+    for words in (["--profile", "mine", "--dry-run"], ["--profile", "mine", "--results", str(tmp_path / "new")], ["--list"]):
+        code, told = main.main(["run", *words]), capsys.readouterr()
+        assert code == 2 and told.err.startswith(f"study/run: {tmp_path / 'mine.yaml'} is damaged (") and told.err.count("\n") == 1, told
+        assert profile.MENDED in told.err and [*tmp_path.iterdir()] == [tmp_path / "mine.yaml"]
 
 
 def test_only_a_set_or_what_became_none_is_continued(tmp_path):
@@ -661,10 +718,12 @@ def test_a_further_page_is_drawn_again_only_with_a_part_that_it_is_made_of(tmp_p
 
 
 REGISTRY = Registry({"implementations": [
-    {"folder": "one", "available": True, "library": "Lib", "variants": [{"name": "one/a"}, {"name": "one/b", "dense": True}]},
-    {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "settings": ["kept"]}]},
-    {"folder": "gone", "available": False, "reason": "not installed", "variants": []}],
-    "blas": [{"name": "openblas", "available": True}, {"name": "atlas", "available": False, "reason": "missing"}]})
+    {"library": "", "version": "1", "licence": "MIT", "reason": ""} | one for one in (
+        {"folder": "one", "available": True, "library": "Lib", "variants": [
+            {"name": "one/a", "description": ""}, {"name": "one/b", "description": "", "dense": True}]},
+        {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "description": "", "settings": ["kept"]}]},
+        {"folder": "gone", "available": False, "reason": "not installed", "variants": []})],
+    "blas": [{"name": "openblas", "available": True, "reason": ""}, {"name": "atlas", "available": False, "reason": "missing"}]})
 
 
 def test_selections():

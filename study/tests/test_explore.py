@@ -185,8 +185,26 @@ def test_winners_are_those_of_python(page, found):
         for one in answer["near"]:
             _same(one, contests[tuple(one["key"])], names)
             ranked += 1
-        _same_point(asked, answer, found["accuracy"], names - _refused(contests, answer["near"]))
+        _same_point(asked, answer, found["accuracy"], names - _refused(contests, answer["near"]), everyone)
     assert ranked > QUESTIONS and sum(1 for answer in answers if answer["point"]) > QUESTIONS / 4
+
+
+def test_a_curve_that_the_budget_cut_leaves_a_faster_one_possible(page):
+    browser = page("scene=four-bar:10&error=0.01")
+    rounds = [[name, number, seconds] for number in (1, 2, 3) for name, seconds in (("x", 1), ("y", 2))]
+    ranked = lambda cut: browser.value(f"""(() => {{
+      const points = ["x", "y"].map((name, i) => ({{name, setting: "default", step: 1, error: 1e-3, time: 1 + i, from: "rounds"}}));
+      const rounds = {json.dumps(rounds)}.map(([name, process, seconds]) => ({{point: points["xy".indexOf(name)], process, seconds, status: "ok"}}));
+      const found = rankPoints({{rounds}}, points, {json.dumps(cut)}); return [found.winner.name, found.decided, found.settled]; }})()""")
+    assert ranked([]) == ranked([{"time": 1.5}]) == ["x", True, True] and ranked([{"time": 0.5}]) == ["x", False, False]
+    settled = lambda **asked: browser.value(f"explorer.ask({json.dumps({'scene': 'four-bar:10', 'error': 0.01, 'no': []} | asked)}).error.ranking?.settled ?? null")
+    browser.value("DATA.sets[0].curves.forEach((one) => { one.cut = []; })")
+    before = settled(), settled(no=["penalty"])
+    library = browser.value("DATA.names.find((one) => !one.own).name")
+    browser.value(f"DATA.sets[0].curves.forEach((one) => {{ one.cut = [{{name: {json.dumps(library)}, setting: 'default', error: 0.02, time: 0}}]; }})")
+    assert (settled(), settled(no=["penalty"])) == (False, before[1]) and not settled(without=[library])  # the curve is its setting's
+    browser.value("DATA.sets[0].curves.forEach((one) => { one.cut[0].error = 0.001; })")
+    assert settled() == before[0]
 
 
 def test_layouts_of_the_program_count_as_one_each(page):
@@ -226,13 +244,17 @@ def _refused(contests, near):
             if status == "unsupported" and not any(key[1] == scene and name in one.able for key, one in contests.items())}
 
 
-def _same_point(asked, answer, curves, names):
+def _same_point(asked, answer, curves, names, everyone):
+    def left(setting):
+        return ("saddle" if setting.startswith("saddle") else "" if setting.startswith(("rattle", "multistep")) else "penalty") not in asked["no"]
     curve = next(one for one in curves if one.scene == answer["curve"])
-    form = curve.points.setting.map(lambda setting: "saddle" if setting.startswith("saddle") else "" if setting.startswith(("rattle", "multistep")) else "penalty")
-    found = meeting(curve.points[curve.points.implementation.isin(names) & ~form.isin(asked["no"])], asked["error"])
+    found = meeting(curve.points[curve.points.implementation.isin(names) & curve.points.setting.map(left)], asked["error"])
     row = fastest(found.to_dict("records"), curve.rounds)
     assert (row is None) == (answer["point"] is None)
     if row:
+        layers = {everyone[name].own for name in names}
+        if any(not error <= asked["error"] and time < row["time"] for name, setting, error, time in curve.cut if everyone[name].own in layers and left(setting)):
+            row |= {"decided": False, "settled": False}
         assert (row["implementation"], row["setting"], row["step"]) == tuple(answer["point"][key] for key in ("name", "setting", "step"))
         assert (bool(row["decided"]), bool(row["settled"])) == (answer["point"]["decided"], answer["point"]["settled"])
         assert row["equivalent"].split("; ") == (answer["point"]["equal"] or [""])
@@ -306,7 +328,7 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
     assert "30 µs" in said(browser) and "0.001 m" in said(browser) and browser.value("!!document.querySelector('#points svg') && !!document.querySelector('#model svg')")
     assert browser.value("[3, 0.5, 1.5].map((deadline) => fits({low: 1, high: 2}, deadline))") == ["mean below", "mean above", "not said"]
     commands = browser.value("[...document.querySelectorAll('#copy pre')].map((one) => one.textContent)")
-    assert commands[1].startswith("build/mbs simulate ") and commands[2].startswith("study/advise ") and "--error 0.001 --deadline-us 30" in commands[2]
+    assert commands[-1].startswith("study/advise ") and "--error 0.001 --deadline-us 30" in commands[-1]
     before, address = said(browser), browser.value("location.hash")
     page(address[1:])
     assert said(browser) == before and browser.value("location.hash") == address
@@ -340,6 +362,18 @@ def test_a_command_has_the_options_of_the_scene_that_is_near(page):
     assert near("bodies:40") == {"scene": "bodies:50", "note": ""} and near("bodies:40,dimension=4")["scene"] == "bodies:40,dimension=4"
 
 
+def test_a_step_is_offered_for_the_motion_alone_that_it_was_measured_on(page):
+    def copied(question):
+        return page(question).value("[document.getElementById('copy').innerText, ...[...document.querySelectorAll('#copy pre')].map((one) => one.textContent)]")
+    told, *commands = copied("scene=ladder:10&error=0.001")
+    assert [one.split()[:3] for one in commands] == [["build/mbs", "bench", "ladder:10"], ["study/advise", "ladder:10", "--error"]]
+    assert re.search(r"0\.001 m was measured on four-bar:\d+.*; study/advise finds yours", told) and "--step" not in told
+    told, _, simulate, advise = copied("scene=four-bar:10&error=0.001")
+    assert re.match(r"build/mbs simulate four-bar:10 --implementation .* --step [\d.e-]+$", simulate) and advise.startswith("study/advise four-bar:10 ")
+    assert "was measured on" not in told
+    assert [one.split()[1] for one in copied("scene=ladder:10")[1:]] == ["bench", "simulate", "ladder:10"]
+
+
 def test_damaged_addresses_do_no_harm(page):
     mine = ["5", {"n": 5}, {"n": "5"}, {"n": True}, {"n": 5, "own": 5, "features": "x", "warnings": "x"}, {"n": 5, "own": [None, {"us": "5"}]},
             {"n": 1e300, "features": {"n": 1e300, "flops": 1e300}}]
@@ -368,6 +402,11 @@ def test_my_scene_moves_the_pin(page):
     ranked = lambda: set(browser.value("explorer.shown.near.flatMap((one) => one.ranking.ratios.map(([name]) => name))"))
     predicted = lambda: set(browser.value("explorer.shown.predicted.map((one) => one.name)"))
     assert "compiled_ldl/fronts" in ranked()
+    for names, told in ((["n", "flops", "widest"], "was fitted on (n, operations of a factorization, widest): its times are extrapolated"),
+                        ([*"abcdefg", 5, {}], "(a, b, c, d, e and 4 more)"), ([], ""), (3, "")):
+        put(browser, "mine", json.dumps(DESCRIBED | {"rule": {"set": "first", "outside": names}, "warnings": ["w"] * 20}))
+        press(browser, "use")
+        assert told in said(browser) and ("outside of all that the rule" in said(browser)) == bool(told)
     put(browser, "mine", json.dumps(DESCRIBED | {"recommendation": [{"implementation": "csc_ldl/uplooking"}]}))
     press(browser, "use")
     # Of whom the rule has no times, a recommendation says nothing.
@@ -491,6 +530,7 @@ def test_rows_marks_and_files(page):
             assert line.endswith("left out: code of our own, on no library")
     press(browser, "csv")
     lines = browser.value("saved.text()").splitlines()
+    assert lines[0].endswith(",settled") and {line.rpartition(",")[2] for line in lines if line.startswith("measured,")} <= {"true", "false"}
     assert any(line.startswith("measured,") and f",{winner(browser)},fastest,1,1,1," in line for line in lines) and any(line.startswith("interpolated,") for line in lines)
     assert browser.value("[Infinity, NaN, undefined, null].map(cell)") == [""] * 4 and "Infinity" not in "".join(lines)
     assert browser.value("cell('=1+1')") == "'=1+1" and browser.value("cell('a\"b,c')") == '"a""b,c"'

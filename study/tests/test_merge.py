@@ -84,6 +84,7 @@ def test_where_neither_days_nor_machines_add_anything_next_to_nothing_is_told():
                                                ("commit", "other", "commit"), ("libraries", "Eigen 9", "libraries"), ("dirty", "true", "tree with changes")])
 def test_other_builds_and_dirty_trees_are_refused(tmp_path, key, value, words):
     context = {"commit": "c", "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false", "cpu_model": "p",
+               "machine": "m", "kernel": "k", "num_cpus": 1,
                "blas": "openblas", "blas_loaded": "/usr/lib/aarch64-linux-gnu/libblas.so"}
     arm, intel = context, context | {"blas_loaded": "/usr/lib/x86_64-linux-gnu/libblas.so"}
     first, alike, *others = [SimpleNamespace(folder=tmp_path / name, facts={"context": one, "date": "today", "parts": []}) for name, one in

@@ -271,14 +271,12 @@ NAMED = {  # damage: (file that the line names, what is done to it, commands tha
                                           lambda path: rewrite(path, lambda data: data.update(context="x")),
                                           EVERY),
     "set that is deep": (lambda folder: folder / "set.json", lambda path: path.write_text("[" * 100000), EVERY),
-    "binary profile": (lambda folder: folder / "profile.yaml", lambda path: path.write_bytes(b"\xff\xfe\x00\x80" * 50),
-                       ("figures", "add")),
-    "profile that is a number": (lambda folder: folder / "profile.yaml", lambda path: path.write_text("3\n"), ("figures", "add")),
+    "binary profile": (lambda folder: folder / "profile.yaml", lambda path: path.write_bytes(b"\xff\xfe\x00\x80" * 50), EVERY),
+    "profile that is a number": (lambda folder: folder / "profile.yaml", lambda path: path.write_text("3\n"), EVERY),
     "stamp that is a list": (lambda folder: folder / ".done" / PART / "maps", lambda path: path.write_text("[]"),
                              EVERY),
-    "registry that is a list": (lambda folder: folder / "registry.json", lambda path: path.write_text("[]"), ("figures",)),
-    "context that is a list": (lambda folder: next((folder / "contexts").glob("*.json")),
-                               lambda path: (path.write_text("[]"), record_in(path.parent.parent).unlink()), ("run",)),
+    "registry that is a list": (lambda folder: folder / "registry.json", lambda path: path.write_text("[]"), EVERY),
+    "context that is a list": (lambda folder: next((folder / "contexts").glob("*.json")), lambda path: path.write_text("[]"), EVERY),
 }
 
 
@@ -320,9 +318,9 @@ def test_what_is_damaged_is_named_in_one_line(whole, here, tmp_path, damage):
         assert code == 2 and one_line(errors) and path.name in errors, (command, errors)
 
 
-def test_a_profile_of_bytes_is_no_profile_of_this_set(whole, here, tmp_path):
+def test_another_profile_is_no_profile_of_this_set(whole, here, tmp_path):
     folder = Path(shutil.copytree(whole[0], tmp_path / "set"))
-    (folder / "profile.yaml").write_bytes(b"\xff\x00" * 99)
+    edit(folder / "profile.yaml", "title: ", "title: another, ")
     code, errors = here(*words_of("run", folder))
     assert code == 2 and one_line(errors) and "the profile's settings" in errors
 

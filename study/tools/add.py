@@ -6,7 +6,9 @@ from collections import Counter
 from dataclasses import dataclass
 
 from analysis.core import schema, timing
-from analysis.core.files import ROOT, StudyError, digest, read_json, write, write_json
+from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
+from analysis.core.gather import gather
+from analysis.core.view import context_in
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
 from study.core.contest import Asked, verdicts
@@ -16,6 +18,7 @@ from study.core.setting import Setting
 from study.core.studyset import StudySet, context_of, listed, need_records, opened, select, sets_in, writable
 from study.core.timing import measure
 from study.tools import shelf
+from study.tools.merge import machine
 
 TABLES = {"families": "winners", "map": "cells"}  # of the parts that say who leads
 SHARE = 0.2     # of the time that all parts of the set's profile have
@@ -46,7 +49,7 @@ def add(arguments):
         folder = options.to or newest(known)
         writable(folder)
         with locks.only_one(folder):
-            need_records(StudySet(folder))
+            need_records(opened(folder))
             table = measured(folder, options.name, known)
     tell(table, folder, options.name)
     return 0
@@ -92,6 +95,7 @@ class Contest:
     start: float     # s
     times: dict      # {name: µs a step}, for the number of samples only
     newcomers: list  # names
+    beyond: tuple = timing.NO_VARIANCE  # of timing.Paired
 
     def rivals(self, there):
         """The leader and the runner-up of the libraries, and the leader of all; those that are still there."""
@@ -101,7 +105,7 @@ class Contest:
 
 def contests(studyset, newcomers, known):
     """Those that one of the newcomers serves; StudyError naming a record or table of the set that was changed."""
-    found = []
+    found, seeds = [], machine.of_seeds(studyset)
     for part in studyset.facts["parts"]:
         there = {one.name: one for one in schema.records_of(studyset.folder, part, studyset.facts["context"])}
         if part not in TABLES:
@@ -115,7 +119,8 @@ def contests(studyset, newcomers, known):
             timed = timing.processes(records).loc[lambda rows: rows.status == "ok"]
             times = timed.groupby("implementation").step_us.median().to_dict()
             found.append(Contest(part, scene, scheme, led.variables.iloc[0], list(led.itertuples()), form, stretch, timed.steps.iloc[0],
-                                 timed.start.iloc[0], times, [name for name in newcomers if known.serves(name, *Setting(scheme).needs)]))
+                                 timed.start.iloc[0], times, [name for name in newcomers if known.serves(name, *Setting(scheme).needs)],
+                                 seeds if "fill=" in scene else timing.NO_VARIANCE))
     return [one for one in found if one.newcomers]
 
 
@@ -145,7 +150,14 @@ def measured(folder, name, known):
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one, said, found in zip(asked, verdicts, records)
             for row in _rows(one, known, said, found)]
-    return _finish(folder, column, lab, rows)
+    return _finish(folder, column, lab, at_once(rows))
+
+
+def at_once(rows):
+    """Marks which rows stay decided when all of a part, form and layer are asked at once, as the set's own tables do."""
+    for asked in gather(((row["part"], row["scheme"], row["layer"]), row) for row in rows).values():
+        timing.holm(asked)
+    return rows
 
 
 def contexts(folder, contenders):
@@ -154,7 +166,7 @@ def contexts(folder, contenders):
     for environment, one in {one.environment: one for one in contenders}.items():
         now = found[environment] = context_of(one)
         kept = folder / "contexts" / f"{environment.replace('|', '-')}.json"
-        then = read_json(kept) if kept.exists() else known.facts["context"]
+        then = context_in(kept) if kept.exists() else known.facts["context"]
         if other := executor.differing(then, now, (*SAME, "blas_loaded") if kept.exists() else SAME):
             key, its, here = other
             raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
@@ -173,7 +185,7 @@ def versions(context):
 def _begin(folder, column, lab):
     """Goes on with the records of this very program, or removes those of an earlier one."""
     path, program = folder / "added" / f"{column}.json", digest(ROOT / executor.program_of())
-    if not path.exists() or read_json(path).get("program") != program:
+    if not path.exists() or read_object(path).get("program") != program:
         shutil.rmtree(lab.base / column, ignore_errors=True)
         (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
     write_json(path, {"program": program})
@@ -201,6 +213,7 @@ def _size(share, contest, rivals):
 def _rows(contest, known, verdicts, records):
     """A row for each layer and newcomer that has a place in it. `verdicts`: of the newcomers."""
     rows = timing.processes(timing.counted(records))
+    paired = timing.Paired(rows, contest.beyond)
     good = rows[rows.status == "ok"]
     wrong = timing.differing(rows) if len(rows) else {}
     if len(good) and set(zip(good.steps, good.start)) != {(contest.steps, contest.start)}:
@@ -213,7 +226,7 @@ def _rows(contest, known, verdicts, records):
             row = {"part": contest.part, "scene": contest.scene, "scheme": contest.scheme, "variables": contest.variables, "layer": cell.layer,
                    "implementation": name, "before": cell.winner, "hands": "not timed" if status in NOT_TIMED else "stays",
                    "record": records[0].name if records else "", "status": status, "reason": reason}
-            yield row | (_compared(rows, name, timing.rank(rows, others), cell.winner) if status == "ok" else {})
+            yield row | (_compared(rows, paired, name, timing.rank(paired, others), cell.winner) if status == "ok" else {})
 
 
 def _standing(rows, verdict, wrong):
@@ -224,22 +237,22 @@ def _standing(rows, verdict, wrong):
     return (lost.status.iloc[0], lost.reason.iloc[0]) if len(lost) else verdict
 
 
-def _compared(rows, name, ranking, before):
+def _compared(rows, paired, name, ranking, before):
     """What a newcomer's row says of it beside the fastest of the others."""
     if ranking is None:
         return {"hands": "open", "reason": "none of those who led the cell could be timed"}
-    ratio = timing.ratio(rows, name, ranking.winner)
+    ratio = timing.ratio(paired, name, ranking.winner)
     times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
     hands = "open" if ratio.low <= 1 <= ratio.high else "changes" if (ratio.high < 1) != (before == name) else "stays"
-    return {"rival": ranking.winner, "ratio": ratio.value, "low": ratio.low, "high": ratio.high, "hands": hands, "step_us": times[name],
-            "rival_us": times[ranking.winner], "processes": len(timing.log_ratios(rows, name, ranking.winner))}
+    return {"rival": ranking.winner, **ratio.columns(), "chance": ratio.chance, "decided": hands != "open", "holm": False, "hands": hands,
+            "step_us": times[name], "rival_us": times[ranking.winner], "processes": len(timing.log_ratios(paired, name, ranking.winner))}
 
 
 def _finish(folder, column, lab, rows):
     table = shelf.table(rows, "added")
     path = folder / "added" / f"{column}.csv"
     write(path, lambda partial: table.to_csv(partial, index=False))
-    write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {
+    write_json(path.with_suffix(".json"), read_object(path.with_suffix(".json")) | {
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), "context": lab.set.facts["context"],
         "table": digest(path), "records": {name: digest(lab.base / name) for name in sorted(lab.names)}})
     shutil.rmtree(lab.set.scratch, ignore_errors=True)
@@ -255,13 +268,13 @@ def tell(table, folder, name):
         for row in ranked.itertuples():
             print(f"{row.scene:24} {row.scheme:12} {row.layer:10} {row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
                   + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
-        others = rows.drop(ranked.index).fillna("")
+        others = rows.drop(ranked.index)
         others["reason"] = others.reason.str.replace(": the scene has .*", "", regex=True)  # of a term: where, in each of them
         for (status, reason), left in others.groupby(["status", "reason"], sort=False):
             print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
         for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
             print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")
-        counts = Counter(rows.hands)
+        counts, held = Counter(rows.hands), (rows.holm.fillna(False) & (rows.hands == "changes")).sum()
         print(f"{part}: {counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
-              f"{counts['not timed']} were not timed")
+              f"{counts['not timed']} were not timed; asked all at once {held} change hands")
     print(f"table: {folder / 'added' / name.replace('/', '.')}.csv")

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 
 from analysis.core import records, schema
-from analysis.core.files import ROOT, StudyError, read_json
+from analysis.core.files import ROOT, StudyError, read_object
 from analysis.core.parts import parts
 from study.core import locks
 from study.core.options import Parser, directory
@@ -70,7 +70,7 @@ def of_records(kept):
     for part in kept.facts["parts"]:
         try:
             there, tables = schema.records_of(kept.folder, part, kept.facts["context"]), kept.folder / part / schema.DIGESTS
-            if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
+            if not tables.exists() or read_object(tables, records=str)["records"] != schema.digest_of(there):
                 yield f"{kept.folder / part}: its tables are not those of its records: run study/figures {kept.folder}"
         except StudyError as error:
             yield str(error)
@@ -114,7 +114,7 @@ def _build(studyset, name):
             for path in sorted(path for path in (studyset.folder / part).iterdir() if path.suffix in (".csv", ".json")):
                 shutil.copyfile(path, building / part / path.name)
             records.pack(studyset.folder, part, records.archive_of(building, part))
-            if schema.digest_of(records.read_part(building, part)) != read_json(building / part / schema.DIGESTS)["records"]:
+            if schema.digest_of(records.read_part(building, part)) != read_object(building / part / schema.DIGESTS, records=str)["records"]:
                 raise StudyError(f"{studyset.folder / 'raw' / part} changed while it was stored")
         pictures = sorted({tail for text in fragments.texts() for tail in SHOWN.findall(text.read_text(encoding="utf-8"))
                            if (studyset.folder / tail).exists()})

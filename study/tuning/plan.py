@@ -6,7 +6,7 @@ from study.core.contest import CHECK_S, Asked, agreeing, controls_of, usual
 from study.core.profile import by_share
 from study.core.timing import measure
 
-SETTINGS = {"scenes": list, "steps": int, "processes": int, "samples": int}
+SETTINGS = {"scenes": [str], "steps": int, "processes": int, "samples": int}
 
 
 def alternatives(lab):

@@ -8,10 +8,9 @@ import pandas
 from scipy import stats
 
 from analysis.core import schema
-from analysis.core.files import read_object
 from analysis.core.gather import gather
 from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio
-from analysis.core.view import View
+from analysis.core.view import View, contexts_in
 from analysis.map.results import Results
 from study.core import executor
 from study.core.timing import LAYOUTS
@@ -43,8 +42,7 @@ def unlike(first, other):
 
 def contexts(studyset):
     """{path: the context in it} of a set and of its environments."""
-    found = {path: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
-    found = {studyset.folder / "set.json": studyset.facts["context"]} | found
+    found = {studyset.folder / "set.json": studyset.facts["context"]} | contexts_in(studyset.folder)
     return {path: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for path, one in found.items()}
 
 

@@ -7,6 +7,8 @@ from analysis.core import records, schema
 from analysis.core.controls import judged
 from analysis.core.files import StudyError, read_object
 from analysis.families import rule
+from analysis.map import carry
+from analysis.map.results import with_samples
 
 RATES = {"vector_bytes": "widest vectors of the build, bytes", "flops_per_ns": "multiply-adds in the widest vectors, operations a ns",
          "divisions_per_ns": "divisions in the widest vectors, a ns",
@@ -37,6 +39,12 @@ def rates(studyset):
 def controls(studyset):
     """`judged` of a set's controls, on the map and on mechanisms."""
     return judged(pandas.concat(table(studyset.folder, part, "controls") for part in PARTS))
+
+
+def of_seeds(studyset):
+    """What timing.Paired takes of a scene with artificial fill: how far a ratio depends on where that lies, as the set's own map has found."""
+    rows = table(studyset.folder, "map", "tidy")
+    return carry.of_seeds(with_samples(rows[rows.kind == "seeds"]))
 
 
 def no_evidence(studyset):

@@ -26,11 +26,12 @@ def paper(arguments):
     one.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
     options = parser.parse_args(arguments)
     known = Known((options.set or main_set()).resolve())
+    if not options.claims and known.folder.parent != ROOT / "results":
+        raise StudyError(f"{known.folder} is no stored set: the paper is built from one of results/ (study/store)")
+    known.need_whole()
     if options.claims:
         print(*artifact.told(known), sep="\n")
         return 0
-    if known.folder.parent != ROOT / "results":
-        raise StudyError(f"{known.folder} is no stored set: the paper is built from one of results/ (study/store)")
     claimed = artifact.judged(known)
     if options.fill:
         print("filled anew: paper/ARTIFACT.md" if artifact.refresh(known, claimed) else "paper/ARTIFACT.md is as it was")
