@@ -53,9 +53,8 @@ def over_size(bounds, rows, look, own):
     """Above: µs a step; below: multiples of the limit code, with their intervals. `own`: as leaders() has it."""
     figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
     if rows.empty:
-        missing(times, "no size was timed")
-        missing(multiples, "")
-        return figure
+        missing("no size was timed", times)
+        return missing("", multiples)
     bounds = bounds[bounds.status == "done"].sort_values("variables")
     for column, (label, dash) in BOUNDS.items():
         times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)
