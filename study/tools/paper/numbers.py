@@ -240,16 +240,12 @@ def _rule(known):
     one = rules.summary(held) if len(held) else defaultdict(float)
     unknown = f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else ""
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
+    elsewhere = pandas.concat([held[:0], *(other.tables("families")["held"] for other in known.compared[1:])]).nlargest(1, "loss")
     return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
                 families=one["families"], scenes=one["scenes"]) | {
-        "elsewhere": _elsewhere(known.compared[1:]), "carried": _carried(known, known.compared[1:]), "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
+        "elsewhere": of_rows(percent(elsewhere.loss.max()), "families/held", elsewhere), "carried": _carried(known, known.compared[1:]),
+        "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
-
-
-def _elsewhere(others):
-    """The worst loss of the rules that other sets give."""
-    held = pandas.concat([one.tables("families")["held"] for one in others]) if others else pandas.DataFrame()
-    return of_rows(percent(held.loss.max()), "families/held", held.nlargest(1, "loss")) if len(held) else None
 
 
 def _carried(known, others):

@@ -44,12 +44,9 @@ def tables(known):
 
 def of_numbers(found):
     """The appendix: an entry a number, to which its uses link."""
+    records = lambda one: one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "") if one.records else ""
     return "".join(rf"\numberentry{{\hypertarget{{where:{name}}}{{{tex(name)}}}}}{{{tex(shorten(one.text, 28, placeholder=' …'))}}}"
-                   rf"{{{tex('; '.join(filter(None, (one.table, _records(one)))))}}}" + "\n" for name, one in found.items())
-
-
-def _records(one):
-    return "" if not one.records else one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
+                   rf"{{{tex('; '.join(filter(None, (one.table, records(one)))))}}}" + "\n" for name, one in found.items())
 
 
 def table(rows, columns, long=False):
@@ -88,11 +85,9 @@ def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
     mine, lost, results = led(real_mechanisms(known)), losses(known), known.results
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
-    rows = []
-    for name, one in [*lost.items()][:RANKED]:
-        price = prices.get(name)
-        rows.append((name, mine.get(name, 0), len(one), number(gmean(one)), number(one.max()), one.idxmax(), *(
-            (number(price["mean"]), number(price["worst"]), f"{price['cells']} of {price['of']}", price["rough"]) if price else ["–"] * 4)))
+    rows = [(name, mine.get(name, 0), len(one), number(gmean(one)), number(one.max()), one.idxmax(), *(
+        (number(price["mean"]), number(price["worst"]), f"{price['cells']} of {price['of']}", price["rough"]) if price else ["–"] * 4))
+            for name, one in [*lost.items()][:RANKED] for price in [prices.get(name)]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"}
                  | dict.fromkeys(("map: mean", "map: worst", "cells", "by pilot"), "r"))
 
@@ -100,27 +95,20 @@ def ranking(known):
 def claims(known):
     """The claims of 2008, with theirs, ours in each set and the verdict; below, those without."""
     beside = {one.folder.name: one.tables("map")["claims"].set_index(["id", "claim"]) for one in known.sets[1:]}
-    rows, without = [], {}
+    ours = lambda row: "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    rows, without = [], {}  # those without a verdict by id and reason
     for row in known.tables("map")["claims"].itertuples():
         theirs = [its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None for its in beside.values()]
         verdicts = [row.verdict, *(one.verdict for one in theirs if one is not None)]
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
             without.setdefault((row.id, row.reason), []).append(row.claim)
         else:
-            rows.append((row.id, row.claim, row.paper, *map(_ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
+            rows.append((row.id, row.claim, row.paper, *map(ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
     heads = dict.fromkeys((known.folder.name, *beside), r"P{%.0fmm}" % (44 / len(known.sets)))
-    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True) + _without(without)
-
-
-def _without(found):
-    """Claims that have no verdict, by reason: {(id, reason): [claim]}"""
-    said = (f"{name}: {claims[0]}" + (f", and {len(claims) - 1} more" if len(claims) > 1 else "") + f" ({reason.rstrip('.')})"
-            for (name, reason), claims in found.items())
-    return "\n" + tex(f"No verdict: {'; '.join(said)}.") + r"\par" if found else ""
-
-
-def _ours(row):
-    return "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    said = (f"{name}: {some[0]}" + (f", and {len(some) - 1} more" if len(some) > 1 else "") + f" ({reason.rstrip('.')})"
+            for (name, reason), some in without.items())
+    return (table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
+            + ("\n" + tex(f"No verdict: {'; '.join(said)}.") + r"\par" if without else ""))
 
 
 def machines(known):
