@@ -1,10 +1,8 @@
 # The answer as JSON (its keys: README.md) and as text.
 from pathlib import Path
 
-import jinja2
-
 from analysis.core.outcomes import FINISHED, GOOD
-from analysis.core.text import number
+from analysis.core.text import layout, number
 from study.tools.advise.choice import counts, halvings
 from study.tools.advise.probe import catalogue, fits, serving
 from study.tools.advise.runner import advised, within
@@ -115,8 +113,7 @@ def _why_not(advice):
 
 
 def text(answer):
-    layout = Path(__file__).with_name("answer.txt.j2").read_text(encoding="utf-8")
-    return jinja2.Template(layout, trim_blocks=True, undefined=jinja2.StrictUndefined).render(
+    return layout(Path(__file__).with_name("answer.txt.j2")).render(
         answer, number=number, spread=_spread, error=_error, ends_as=_ends_as, in_time=in_time, most_refused=MOST_REFUSED)
 
 

@@ -3,11 +3,10 @@ import datetime
 import subprocess
 from pathlib import Path
 
-import jinja2
 import pandas
 
 from analysis.core.files import ROOT, write, write_text
-from analysis.core.text import number
+from analysis.core.text import layout, number
 
 QUESTIONS, SEARCHED, PAGE = "validation.csv", "searched.csv.xz", "README.md"
 BEGUN = {".lock", "scenes", QUESTIONS, SEARCHED, PAGE}  # its folder
@@ -63,8 +62,7 @@ def page(table):
     failed = [_failed(row) for row in asked[~ok.all(axis=1)].itertuples()]
     others = [(scene, ", ".join(map(number, rows.error))) for scene, rows in table[~table.asked].groupby("scene")]
     origins = [(*key, rows.scene.nunique()) for key, rows in table.groupby(["commit", "processor", "date"])]
-    text = Path(__file__).with_name("page.md.j2").read_text(encoding="utf-8")
-    return jinja2.Template(text, trim_blocks=True, undefined=jinja2.StrictUndefined).render(
+    return layout(Path(__file__).with_name("page.md.j2")).render(
         sentence=sentence(table), kinds=kinds, failed=failed, others=others, origins=origins, most=MOST, latest=LATEST)
 
 

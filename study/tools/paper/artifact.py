@@ -2,9 +2,8 @@
 import re
 from pathlib import Path
 
-import jinja2
-
 from analysis.core.files import ROOT, digest
+from analysis.core.text import layout
 from study.tools.fragments import rewritten
 from study.tools.paper.claims import claims
 
@@ -15,8 +14,7 @@ SAYS = {True: "holds", False: "does not hold", None: "not measured"}
 
 def places(known, claimed):
     """What stands at each mark: a function of its name."""
-    text = Path(__file__).with_name("artifact.md.j2").read_text(encoding="utf-8")
-    return jinja2.Template(text, trim_blocks=True, undefined=jinja2.StrictUndefined).make_module(
+    return layout(Path(__file__).with_name("artifact.md.j2")).make_module(
         {"known": known, "claimed": claimed, "listed": claims(), "says": SAYS, "digest": digest})
 
 

@@ -61,13 +61,10 @@ def table(rows, columns, long=False):
 def contenders(known):
     """Who takes part, and what was tried for each."""
     registry, tried = known.registry, known.tables("tuning")["alternatives"].loc[lambda rows: rows.status == "ok"]
-    rows = []
-    for name, one in registry.variants.items():
-        if name not in registry.examples:
-            mine = tried[tried.base == name]
-            rows.append((name, "none: own" if name in registry.own else one["library"], one["description"],
-                         "yes" if one.get("role") == "paper" else "no", mine.alternative.nunique(),
-                         f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"))
+    rows = [(name, "none: own" if name in registry.own else one["library"], one["description"],
+             "yes" if one.get("role") == "paper" else "no", mine.alternative.nunique(),
+             f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–")
+            for name, one in registry.variants.items() if name not in registry.examples for mine in [tried[tried.base == name]]]
     return table(rows, {"variant": r"P{30mm}", "library": r"P{26mm}", "form": r"P{74mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
 
 
