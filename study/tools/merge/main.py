@@ -69,22 +69,14 @@ def merge(arguments):
 
 
 def _drawn(libraries, sets, path):
-    """The picture's file in base 64; None without mechanisms."""
+    """The picture's file in base 64; None without mechanisms. A mark a mechanism, by size and non-zeros a column of its factor, in the colour of the
+    library that loses least on the machine where it is worst; hatched where no library is among the best on all machines."""
     if not libraries:
         return None
-    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene")
-    drawn = _picture(libraries, features.reindex([one.question.scene for one in libraries]), sets[0].registry)
-    save(drawn, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
-    plt.close(drawn)
-    return base64.b64encode(path.read_bytes()).decode()
-
-
-def _picture(agreed, features, registry):
-    """A mark a mechanism, by size and non-zeros a column of its factor, in the colour of the library that loses least on the machine where it
-    is worst; hatched where no library is among the best on all machines. `features`: rows of families/mechanisms.csv by scene."""
-    look, shown = Look(registry), {}
+    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene").reindex([one.question.scene for one in libraries])
+    look, shown = Look(sets[0].registry), {}
     figure, axes = plt.subplots(figsize=(8.6, 5.4))
-    for one in filter(lambda one: one.robust, agreed):
+    for one in filter(lambda one: one.robust, libraries):
         known, colour = features.loc[one.question.scene], look.colour(one.robust)
         shown[one.robust] = colour
         differs = one.verdict == "differs"
@@ -97,7 +89,9 @@ def _picture(agreed, features, registry):
     handles = [Line2D([], [], marker="o", linestyle="none", markersize=8, color=colour, label=name) for name, colour in sorted(shown.items())]
     hatched = Patch(facecolor="white", edgecolor="#444444", hatch="/////", label="depends on the machine")
     axes.legend(handles=[*handles, hatched], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
-    return figure
+    save(figure, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
+    plt.close(figure)
+    return base64.b64encode(path.read_bytes()).decode()
 
 
 def _said(agreed, machines):

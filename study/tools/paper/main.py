@@ -60,12 +60,12 @@ def write_parts(known, found, claimed):
     lines = [rf"\csdef{{number@{name}}}{{{tables.tex(one.text)}}}" for name, one in found.items()]
     lines += [rf"\csdef{{claim@{name}}}{{{words[holds]}}}" for name, (holds, _) in claimed.items()]
     write_text(audit.BUILD / "numbers.tex", Path(__file__).with_name("macros.tex").read_text(encoding="utf-8") + "\n".join(lines) + "\n")
-    for name, text in tables.tables(known).items():
-        write_text(audit.BUILD / f"table-{name}.tex", text + "\n")
+    for name in tables.TABLES:
+        write_text(audit.BUILD / f"table-{name}.tex", getattr(tables, name)(known) + "\n")
     write_text(audit.BUILD / "table-numbers.tex", tables.of_numbers(found))
     print("drawing", flush=True)
-    for name, figure in figures.figures(known).items():
-        save(figure, audit.BUILD / f"figure-{name}.pdf")
+    for name, (draw, height) in figures.DRAWN.items():
+        save(figures.fit(draw(known), height), audit.BUILD / f"figure-{name}.pdf")
     write_json(audit.STAMP, audit.stamp(known))
 
 

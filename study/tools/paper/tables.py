@@ -15,8 +15,7 @@ from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import ledger, summary
 from study.tools.merge import machine
-from study.tools.paper import numbers
-from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real_mechanisms
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -34,12 +33,8 @@ DEFAULTS = 6    # of other tools: the least costly and the two most costly
 MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
 GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
+# Functions of Known, which give LaTeX.
 TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "leaves", "defaults", "largest", "engines", "mechanisms")
-
-
-def tables(known):
-    """{name: LaTeX}"""
-    return {name: globals()[name](known) for name in TABLES}
 
 
 def of_numbers(found):
@@ -119,13 +114,13 @@ def machines(known):
 
 
 def _machine(one):
-    real, cells, control = numbers.real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
+    found, cells, control = real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
     measured = machine.rates(one)
     return {"processor": one.context["cpu_model"], "measured on": one.facts["date"][:10],
             "pairs timed against themselves, of these decided, which is false": f"{control['pairs']}, {control['false']}",
-            "mechanisms that are settled": f"{real['said'].text} of {real['mechanisms'].text}",
-            "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
-            "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
+            "mechanisms that are settled": f"{found['said'].text} of {found['mechanisms'].text}",
+            "library that is fastest or as fast most often": f"{found['leader'].text} on {found['leads'].text}",
+            "best single library: mean and worst loss": f"{found['single'].text}: {found['mean'].text}, {found['worst'].text}",
             "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
         text: number(measured.get(name)) for name, text in machine.RATES.items() if name in measured and name not in ("L2", "L3")}
 
