@@ -279,12 +279,9 @@ def differing(rows):
     totals = {name: set(values) for name, values in gather((row.implementation, row.passes) for row in good.itertuples()).items()}
     ranked = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name).most_common(2)
     right = None if not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1] else ranked[0][0]
-    most = "and no number is that of most" if right is None else f"most others {_text({right})}"
-    return {name: f"{_text(values)} passes over the stretch, {most}" for name, values in totals.items() if values != {right}}
-
-
-def _text(values):
-    return "/".join(f"{value:.0f}" for value in sorted(values))
+    text = lambda values: "/".join(f"{value:.0f}" for value in sorted(values))
+    most = "and no number is that of most" if right is None else f"most others {text({right})}"
+    return {name: f"{text(values)} passes over the stretch, {most}" for name, values in totals.items() if values != {right}}
 
 
 def median(values):

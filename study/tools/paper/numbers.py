@@ -11,9 +11,11 @@ from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
 from analysis.core.text import number, span
 from analysis.engines.sentences import compared, medians
+from analysis.extremes import sentences as extremes
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
+from analysis.realtime import sentences as realtime
 from study.core import profile as profiles
 from study.tools.merge import agreement, machine
 
@@ -289,7 +291,8 @@ def _window(known):
 
 def _latency(known):
     null = known.tables("realtime")["machine"].loc[lambda rows: rows.status == "done"]
-    said = " ".join(one for one in known.said("realtime") if one.startswith("Steps of"))
+    answers = realtime.answers(known.tables("realtime"), known.view("realtime"))
+    said = " ".join(one["text"] for one in answers if one["text"].startswith("Steps of"))
     return each("realtime/machine", null, lost=number(null.lost.sum(), 5), gap=number(null.largest_us.max()), watched=number(null.seconds.sum())) | {
         "said": of_rows(said, "realtime/largest", known.tables("realtime")["largest"])}
 
@@ -309,7 +312,8 @@ def _own(known):
 
 
 def _limits(known):
-    said = " ".join(known.said("extremes")[:1]).partition(" Other false alarms:")[0]  # which the part's page names, run by run
+    first, *_ = extremes.answers(known.tables("extremes"), known.view("extremes"))
+    said = first["text"].partition(" Other false alarms:")[0]  # which the part's page names, run by run
     return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", known.tables("extremes")["battery"])}
 
 
