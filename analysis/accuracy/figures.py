@@ -52,8 +52,8 @@ def work(rows, won, look, unit, title):
         mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
         axes.set_title(TITLES[layer])
         if meeting(mine, numpy.inf).empty:
-            missing(axes, "nobody finished and was timed")
-            missing(ratios, "")
+            missing("nobody finished and was timed", axes)
+            missing("", ratios)
             continue
         front = mine[mine[f"front_{layer}"].astype(bool)]
         series = _series(mine, front, look)

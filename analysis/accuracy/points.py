@@ -2,6 +2,8 @@
 #
 # Time is that of a simulated second. The program times a stretch from the start of the motion; a whole run may need more
 # or fewer passes a step, so that the time of a step is that of the stretch times the ratio of passes.
+from operator import itemgetter
+
 import numpy
 import pandas
 
@@ -11,6 +13,7 @@ from analysis.core.outcomes import FINISHED, of_run
 from analysis.accuracy import subjects
 
 KEY = ["scene", "implementation", "setting", "step"]
+_key = itemgetter(*KEY)  # of a row
 LOOK, ROUNDS, RUN = "look", "rounds", "run"  # where a time is from: one process, several, an untimed run
 NOT_JUDGED = "not-judged"                    # the status of a point without a run of its own
 ROLES = {"look": LOOK, "time": ROUNDS}       # of timed cells, before the slash
@@ -73,10 +76,6 @@ def points(made, measured):
         rows.append(row)
     return pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "error", "error_of", "passes", "factorizations", "variables",
                                            "fill", "step_us", "time", "time_low", "time_high", "time_from", "processes", "record"])
-
-
-def _key(row):
-    return tuple(row[name] for name in KEY)
 
 
 def _processes(measured, roles):

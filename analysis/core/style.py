@@ -92,14 +92,15 @@ def legend(axes, order):
 
 def nothing(text):
     """A figure that says what is missing, and no more."""
-    figure, axes = plt.subplots(figsize=(6, 1.2))
-    missing(axes, text)
-    return figure
+    return missing(text, plt.subplots(figsize=(6, 1.2))[1])
 
 
-def missing(axes, text):
-    axes.set_axis_off()
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY, fontsize=10, wrap=True)
+def missing(text, *those):
+    """The figure of these axes, which say what is missing."""
+    for axes in those:
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY, fontsize=10, wrap=True)
+    return those[0].figure
 
 
 def size_ticks(axes, sizes):

@@ -1,6 +1,7 @@
 # Numbers and tables as pages show them.
 import math
 
+import jinja2
 import pandas
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -62,3 +63,8 @@ def rows_of(table):
 def grouped(table, key):
     """[(key, rows)], in the table's order; what is empty stays NaN."""
     return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
+
+
+def layout(path):
+    """The template of a text that is no page."""
+    return jinja2.Template(path.read_text(encoding="utf-8"), trim_blocks=True, undefined=jinja2.StrictUndefined)

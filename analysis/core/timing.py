@@ -5,6 +5,7 @@
 # build on a machine of this kind will show. Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one
 # would lose by the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
+import statistics
 from collections import Counter, namedtuple
 from dataclasses import replace
 
@@ -278,22 +279,15 @@ def differing(rows):
     totals = {name: set(values) for name, values in gather((row.implementation, row.passes) for row in good.itertuples()).items()}
     ranked = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name).most_common(2)
     right = None if not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1] else ranked[0][0]
-    return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else
-            f"{_text(values)} passes over the stretch, and no number is that of most"
-            for name, values in totals.items() if values != {right}}
-
-
-def _text(values):
-    return "/".join(f"{value:.0f}" for value in sorted(values))
+    text = lambda values: "/".join(f"{value:.0f}" for value in sorted(values))
+    most = "and no number is that of most" if right is None else f"most others {text({right})}"
+    return {name: f"{text(values)} passes over the stretch, {most}" for name, values in totals.items() if values != {right}}
 
 
 def median(values):
-    """Median of finite values; NaN if there is none or one is not finite. Of the few that it is asked of here, numpy.median takes ten
-    times as long."""
-    ordered = sorted(math.nan if value is None else float(value) for value in values)
-    if not ordered or not all(map(math.isfinite, ordered)):
-        return math.nan
-    return (ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2]) / 2
+    """Median of finite values; NaN if there is none or one is not finite. Of few numpy.median takes ten times as long."""
+    known = [math.nan if value is None else float(value) for value in values]
+    return statistics.median(known) if known and all(map(math.isfinite, known)) else math.nan
 
 
 def power_law(sizes, times):

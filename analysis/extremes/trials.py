@@ -179,10 +179,8 @@ def _long():
     for step in STEPS[:2]:
         for loops in (1, 2, 5):
             yield from _trials("100 s", f"{loops} loops", Chain(loops), [step], LONG, FREE)
-        for name, linkage in FAR.items():
-            yield from _trials("100 s", f"{name}, driven", linkage, [step], LONG, DRIVEN[:2])
-        for name, linkage in FAR.items():
-            yield from _trials("100 s", f"{name}, free", replace(linkage, driven=False), [step], LONG, FREE)
+        for (kind, settings), (name, linkage) in product((("driven", DRIVEN[:2]), ("free", FREE)), FAR.items()):
+            yield from _trials("100 s", f"{name}, {kind}", replace(linkage, driven=kind == "driven"), [step], LONG, settings)
 
 
 def _standard():

@@ -33,9 +33,7 @@ def real_map(tables, look, registry):
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
     rows = best_form(winners, "libraries")
     if rows.empty or mechanisms[DECIDES].isna().all():
-        for axes in (left, right):
-            missing(axes, "nobody was timed")
-        return figure
+        return missing("nobody was timed", left, right)
     rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")
     marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(dict.fromkeys(rows.family))}
     shown = {}
@@ -66,8 +64,7 @@ def _lead(axes, rows, scenes, look, marks, registry):
     """Times faster than the fastest library, by size: the fastest code of our own on each mechanism."""
     fastest = fastest_own(scenes, registry).merge(rows[["scene", "scheme", "n"]], on=["scene", "scheme"])
     if fastest.empty:
-        missing(axes, "no code of our own was timed")
-        return
+        return missing("no code of our own was timed", axes)
     insides = dict(zip(fastest.implementation.value_counts().index, cycle(FILLS)))
     for row in fastest.itertuples():
         axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low] if row.to_rival_low > 0 else [1 / row.to_rival] * 2,
@@ -98,9 +95,7 @@ def held_figure(held):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6), gridspec_kw={"wspace": 0.25})
     rows = held[held.step_us.notna() & held.predicted_us.notna()] if len(held) else held
     if rows.empty:
-        for axes in (left, right):
-            missing(axes, "too few mechanisms for a rule")
-        return figure
+        return missing("too few mechanisms for a rule", left, right)
     for scheme, mark, colour in zip(SCHEMES, ("o", "^"), ALTERNATIVES):
         some = rows[rows.scheme == scheme]
         left.plot(some.step_us, some.predicted_us / some.step_us, mark, color=colour, markersize=5.5, label=scheme, linestyle="none")

@@ -12,13 +12,12 @@ def context(tables, view):
     ranked = [(name, known.get(name, {}), {(row["scheme"], row["layer"]): row for row in rows.to_dict("records")})
               for name, rows in winners.groupby("scene", sort=False)]
     times = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()]
-    lost = {}
-    for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
-        lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
+    lost = scenes[~scenes.status.isin(["ok", "slower"])].assign(where=lambda rows: rows.scene + ", " + rows.scheme)
     held, decided = tables["held"], winners[(winners.layer == "libraries") & winners.decided.fillna(False).astype(bool)]
     return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables),
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
-            "lost": [(*what, list(names.items())) for what, names in lost.items()],
+            "lost": [(*what, [(name, list(mine["where"])) for name, mine in rows.groupby("implementation", sort=False)])
+                     for what, rows in lost.groupby(["status", "reason"], sort=False)],
             "holm": [(scheme, int(rows.holm.astype(bool).sum()), len(rows)) for scheme, rows in decided.groupby("scheme", sort=False)],
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
             "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],

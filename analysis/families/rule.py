@@ -247,17 +247,12 @@ def shape(scene):
 
 def _losses(losses, status, shapes):
     """Losses, with those that only the look at a smaller one of the shape tells or that are of a failure; and what each is known by."""
-    by, last = status.replace({"ok": "turns", "slower": "look"}).where(losses.notna(), ""), {}
-    for scene in [one for one in shapes if one in losses.index]:
-        smaller = last.setdefault(shapes[scene], {})
-        for name, loss in losses.loc[scene].items():
-            if not numpy.isnan(loss):
-                smaller[name] = loss
-            elif status.loc[scene, name] not in ("excluded", "slower", "dropped", ""):
-                losses.loc[scene, name], by.loc[scene, name] = FAILED, "failed"
-            elif status.loc[scene, name] in ("excluded", "slower") and name in smaller:
-                losses.loc[scene, name], by.loc[scene, name] = smaller[name], "smaller"
-    return losses, by
+    by = status.replace({"ok": "turns", "slower": "look"}).where(losses.notna(), "")
+    known = losses.loc[[scene for scene in shapes if scene in losses.index]]  # from small to large
+    smaller = known.groupby([shapes[scene] for scene in known.index]).ffill().reindex_like(losses)
+    failed = losses.isna() & ~status.isin(["excluded", "slower", "dropped", ""])
+    told = losses.isna() & status.isin(["excluded", "slower"]) & smaller.notna()
+    return losses.mask(failed, FAILED).mask(told, smaller), by.mask(failed, "failed").mask(told, "smaller")
 
 
 def _times(rows, libraries):

@@ -38,24 +38,19 @@ def everyone(steps):
 def leaders(rows, own=()):
     """The variant of each folder with the least geometric mean multiple over the sizes that most of its folder's
     variants have; in the order of that mean. Of folders in `own` all variants."""
-    rows = rows[rows.implementation != LIMIT]
-    rows = rows.assign(folder=rows.implementation.str.partition("/")[0], log=numpy.log(rows.multiple))
-    chosen = []
-    for folder, mine in rows.groupby("folder"):
-        most = mine.groupby("implementation").loops.nunique().max()
-        whole = mine.groupby("implementation").filter(lambda one, most=most: len(one) == most)
-        means = (mine if folder in own else whole).groupby("implementation").log.mean()
-        chosen += [(means[name], name) for name in (means.index if folder in own else [means.idxmin()])]
-    return [name for _, name in sorted(chosen)]
+    rows = rows[rows.implementation != LIMIT].assign(log=lambda rows: numpy.log(rows.multiple))
+    found = rows.groupby("implementation").agg(mean=("log", "mean"), rows=("log", "size"), sizes=("loops", "nunique"))
+    found["folder"] = found.index.str.split("/").str[0]
+    found = found[(found.rows == found.groupby("folder").sizes.transform("max")) | found.folder.isin(own)].sort_values("mean", kind="stable")
+    return list(found.index[~found.folder.duplicated() | found.folder.isin(own)])
 
 
 def over_size(bounds, rows, look, own):
     """Above: µs a step; below: multiples of the limit code, with their intervals. `own`: as leaders() has it."""
     figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
     if rows.empty:
-        missing(times, "no size was timed")
-        missing(multiples, "")
-        return figure
+        missing("no size was timed", times)
+        return missing("", multiples)
     bounds = bounds[bounds.status == "done"].sort_values("variables")
     for column, (label, dash) in BOUNDS.items():
         times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)

@@ -6,19 +6,16 @@ from analysis.limit.tables import KINDS, NODES
 
 def context(tables, view):
     steps = tables["steps"]
-    own = steps[steps.implementation.isin(view.registry.own) & (steps.variables >= 100)]
+    timed = steps[(steps.status == "ok") & steps.step_us.notna()]
+    own = timed[timed.implementation.isin(view.registry.own) & (timed.variables >= 100)]
     return {"phases": PHASES, "settings": view.settings,
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
-            "sizes": grouped(_timed(steps[steps.form == "penalty"]).sort_values(["loops", "step_us"]), "variables"),
+            "sizes": grouped(timed[timed.form == "penalty"].sort_values(["loops", "step_us"]), "variables"),
             # First the form whose passes do not depend on the size.
-            "growth": grouped(_timed(own).sort_values("form", ascending=False, kind="stable"), "form"), "scenes": by_scene(tables["scenes"], tables["leads"]),
+            "growth": grouped(own.sort_values("form", ascending=False, kind="stable"), "form"), "scenes": by_scene(tables["scenes"], tables["leads"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables),
             "sweeps": tables["sweeps"].to_dict("records"), "nodes": NODES}
-
-
-def _timed(rows):
-    return rows[(rows.status == "ok") & rows.step_us.notna()]
 
 
 def by_scene(scenes, leads):

@@ -40,8 +40,7 @@ def fastest(results, look, title, names, letters=13, line=2.1):
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * len(sizes)), 7.4))
     axes.set_title(title)
     if not any(cell.ranking for cell in cells):
-        missing(axes, "nobody of these was timed")
-        return figure
+        return missing("nobody of these was timed", axes)
     for place, mine in enumerate(sizes.values()):
         _column(axes, place - 0.5, mine, look, (letters, line))
     axes.axhline(0, color="#444444", linewidth=0.8)
@@ -155,9 +154,7 @@ def sparse(results, look):
                                   gridspec_kw={"hspace": 0.08, "height_ratios": [1.2, 1]})
     panels[0].set_title("Figure 4: sparse solvers of libraries at the four-bar's own fill")
     if not found:
-        for axes in panels:
-            missing(axes, "no sparse library was timed at its own fill")
-        return figure
+        return missing("no sparse library was timed at its own fill", *panels)
     beyond = [place for place, size in enumerate(sizes) if size > PAPER_END]
     for axes in panels:
         for number, (name, series) in enumerate(found.items()):  # side by side at their size
@@ -194,8 +191,7 @@ def over_fill(results, look):
     size = min(fills.index[fills > 2], key=lambda one: abs(one - FIGURE_5), default=None)
     figure, axes = plt.subplots(figsize=(8.4, 5.4))
     if size is None:
-        missing(axes, "no size was timed at three fills or more")
-        return figure
+        return missing("no size was timed at three fills or more", axes)
     samples = samples[samples.variables == size]
     scenes = samples.groupby("fill_percent").scene.first()
     us = samples.groupby(["implementation", "fill_percent"]).us.agg(["median", "min", "max"])

@@ -94,11 +94,8 @@ def unmeasured(head, reason, rule, unit="×"):
 
 def by_id(table):
     """{id: (verdict, its rows' verdicts in words)}: that of all its measured rows, mixed where they differ."""
-    found = {}
-    for name, rows in table.groupby("id", sort=False):
-        kinds = [one for one in VERDICTS if one in set(rows.verdict)]
-        found[name] = ((MIXED if len({*kinds} - {UNMEASURED}) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")
-    return found
+    return {name: ((MIXED if len({*kinds} - {UNMEASURED}) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")
+            for name, rows in table.groupby("id", sort=False) for kinds in [[one for one in VERDICTS if one in set(rows.verdict)]]}
 
 
 def told(table):

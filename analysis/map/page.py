@@ -14,7 +14,8 @@ def context(tables, view):
     scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
     timed = results.timing[results.timing.status == "ok"]
     null = timed.implementation.str.startswith("null/")  # the harness's control
-    dense = timed[timed.fill_asked.notna() & timed.implementation.isin(paper.dense(results))]
+    dense = timed[timed.implementation.isin(paper.dense(results))]
+    pairs_of = lambda rows: ", ".join(sorted(rows.blas.unique())) or "none"  # "openblas, reference"
     ranked, overhead = timed[~null], timed[null].groupby("variables").step_us.median().max()
     return {"by_size": {layer: list(by_outcome(summary.by_size(results, results.layer(layer)), what))
                         for layer, what in (("libraries", "library"), ("all", "of all"))},
@@ -22,8 +23,8 @@ def context(tables, view):
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": [*step_times(results)], "overhead": overhead, "centred": LAST_CENTRED, "title": paper.TITLE,
-            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results),
-            "filled_pairs": ", ".join(sorted(dense.blas.unique())) or "none",
+            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": pairs_of(dense),
+            "filled_pairs": pairs_of(dense[dense.fill_asked.notna()]),
             "pairs": [pair | {"used": sorted(ranked.implementation[ranked.blas == pair["name"]].unique())}
                       for pair in view.registry.listed.get("blas", [])],
             "verdicts": verdicts(tables["verification"], results.implementations), "losses": losses(results),

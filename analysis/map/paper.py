@@ -46,12 +46,6 @@ def dense(results):
     return names + [one for name in names for one in results.alternatives(name).implementation.unique() if one not in names]
 
 
-def dense_pairs(results):
-    """"openblas, reference": the pairs behind the best dense version."""
-    rows = results.timing[(results.timing.status == "ok") & results.timing.implementation.isin(dense(results))]
-    return ", ".join(sorted(rows.blas.unique())) or "none"
-
-
 def sparse(results, others=False):
     """Sparse solvers that stand for one of the paper's; with `others` those of all libraries with optimised operations."""
     names = [name for system, found in SYSTEMS.items() if system != "optimised dense" for name in found]

@@ -3,7 +3,7 @@ from collections import namedtuple
 from functools import cache
 
 from analysis.core.registry import NULL, TWIN
-from analysis.core.timing import NO_VARIANCE, NONE
+from analysis.core.timing import NO_VARIANCE, NONE, ratio
 from analysis.map import carry, timed
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
@@ -83,7 +83,7 @@ class Results:
     @cache
     def versus(self, scene, slow, fast):
         """The Versus of two; None if they cannot be compared."""
-        found = NONE if None in (slow, fast) or slow == fast else self.paired(scene).ratio(slow, fast)
+        found = NONE if None in (slow, fast) or slow == fast else ratio(self.paired(scene).of(slow, fast), slow, fast)
         if found.value != found.value:
             return None
         rows = self.rows(scene)

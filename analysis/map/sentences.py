@@ -29,7 +29,7 @@ def by_outcome(groups, what="library"):
     """A sentence for each that is shown to be fastest at some sizes, one for sizes of each other kind."""
     told = gather(((group["kind"], group["names"][0] if group["kind"] == "decided" else ""), group) for group in groups)
     for (kind, name), mine in told.items():
-        sizes = f"n = {', '.join(summary.span(group) for group in mine)}"
+        sizes = "n = " + ", ".join(" to ".join(dict.fromkeys(f"{group[end]:g}" for end in ("first", "last"))) for group in mine)
         margins = [value for group in mine for value in group["margins"] if value == value]
         names = ", ".join(dict.fromkeys(one for group in mine for one in group["names"]))
         ahead = " to ".join(dict.fromkeys(f"{value:.2f}" for value in (min(margins), max(margins)))) if margins else ""

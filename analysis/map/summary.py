@@ -22,11 +22,6 @@ def by_size(results, names):
     return groups
 
 
-def span(group):
-    """Sizes of one of `by_size`: "10 to 22"."""
-    return f"{group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
-
-
 def dense_from(results):
     """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those at and above which the
     best dense library is faster than the best sparse one (None: at none), "last_sparse" the last fill with another outcome (None: at none),

@@ -40,9 +40,6 @@ class Scene:
         both = [set(self.again.logs.get(name, ())) for name in (slow, fast)]
         return self.again if len(both[0] & both[1]) > 1 else self.all
 
-    def ratio(self, slow, fast):
-        return timing.ratio(self.of(slow, fast), slow, fast)
-
 
 def leaders(rankings):
     """Names of those who lead in one of several Rankings, where they are more than one."""

@@ -61,9 +61,8 @@ def expected(record, scheme):
 def multiples(rows, libraries):
     """{name: time of the look over the fastest library's}; of who was left out as too slow: infinite."""
     times = times_of(rows)
-    best = min((time for name, time in times.items() if name in libraries), default=None)
     slow = dict.fromkeys(rows[rows.status == "slower"].implementation, float("inf"))
-    return slow | ({name: time / best for name, time in times.items()} if best else {})
+    return slow | (times / times[times.index.isin(libraries)].min()).dropna().to_dict()
 
 
 def falling(name, before):

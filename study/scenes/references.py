@@ -42,15 +42,11 @@ def four_bar(times, loops):
 
 def andrews_end():
     """Positions of Andrews' mechanism at 0.03 s from the published angles: [Mazzia, Magherini, 2008], computed there in quadruple precision."""
-    beta, gamma = 0.1581077119629904e2, 0.4082224013073101e-1
-    delta, epsilon = 0.5244099658805304, 0.1048080741042263e1
-    a, b = numpy.array([-0.06934, -0.00227]), numpy.array([-0.03635, 0.03273])
-    cos, sin = numpy.cos, numpy.sin
-    at = {"E": 7e-3 * numpy.array([cos(beta), sin(beta)]),
-          "P": b + 35e-3 * numpy.array([sin(gamma), -cos(gamma)]),
-          "S": a + 40e-3 * numpy.array([cos(delta), sin(delta)]),
-          "U": a + 40e-3 * numpy.array([sin(epsilon), -cos(epsilon)])}
-    return {f"{name}.{axis}": float(value) for name, place in at.items() for axis, value in zip("xy", place)}
+    angles = 0.1581077119629904e2, 0.4082224013073101e-1, 0.5244099658805304, 0.1048080741042263e1
+    beta, gamma, delta, epsilon = numpy.exp(1j * numpy.array(angles))
+    a, b = -0.06934 - 0.00227j, -0.03635 + 0.03273j
+    at = {"E": 7e-3 * beta, "P": b - 35e-3j * gamma, "S": a + 40e-3 * delta, "U": a - 40e-3j * epsilon}
+    return {f"{name}.{axis}": float(value) for name, place in at.items() for axis, value in (("x", place.real), ("y", place.imag))}
 
 
 # What `known` in problems.yaml may name, by where it comes from.

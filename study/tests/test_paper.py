@@ -154,7 +154,7 @@ def names(sets):
 def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
     both = beside(second=ANOTHER)
     assert list(audit.of_sets(both)) == [] and names(both.compared) == names(both.sets) == ["first", "second"]
-    assert "Beside it, of the same build, to compare processors: `second`" in artifact._set(both)
+    assert "Beside it, of the same build, to compare processors: `second`" in artifact.places(both, {}).set()
     assert f"on 2 processors (sets first, second, commit {both.context['commit'][:10]}) the same library is fastest" in fragments.fragment("cases")
     assert all(len(set(one.winners)) == 1 for one in both.agreed) and both.agreed
     count = numbers(both)
@@ -174,10 +174,10 @@ def test_a_set_that_is_compared_with_none_is_refused(beside, context, said):
 
 def test_a_set_alone_is_compared_with_none(beside):
     alone = beside()
-    assert alone.compared == [] and names(alone.sets) == ["first"] and "Beside" not in artifact._set(alone)
+    assert alone.compared == [] and names(alone.sets) == ["first"] and "Beside" not in artifact.places(alone, {}).set()
     claimed, count = artifact.judged(alone), numbers(alone)
     assert [claimed[name][0] for name in ("compared", "machines", "vector")] == [None] * 3
-    assert "`study/merge SET SET`" in artifact._claims(alone, claimed) and count["machines.first"].text == NOT_MEASURED
+    assert "`study/merge SET SET`" in artifact.places(alone, claimed).claims() and count["machines.first"].text == NOT_MEASURED
     assert "first" in tables.machines(alone) and "Not measured" in tables.differs(alone) and "processors" not in fragments.fragment("cases")
 
 

@@ -43,7 +43,17 @@ def against(arguments):
             names = select(known, options.only)
             for scene in options.scenes:
                 describe(scene)
-        table = _measure(folder, options, known, names, revision, _build(revision, folder / "run.log"))
+        build = _build(revision, folder / "run.log")
+        old = digest(ROOT / program_of(build=build))[:16]
+        lab, contenders = shelf.open_shelf(folder, "against", known, options.only, names, scenes=options.scenes, old=old)
+        there = _variants_of(build)
+        rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
+                for one in contenders if one.variant not in there for scene in options.scenes]
+        for scene in options.scenes:
+            for group in by_environment(one for one in contenders if one.variant in there).values():
+                rows += _ratios(lab, scene, group, options.rounds, build, revision)
+        lab.display.end()
+    table = shelf.table(rows, "ratios")
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
     print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
     for row in table.itertuples():
@@ -70,20 +80,6 @@ def _build(revision, log):
             ["cmake", "--build", str(tree / "build"), "--target", "mbs_program"]]:
         built(command, f"{revision}: {' '.join(command[:2])}", log)
     return build
-
-
-def _measure(folder, options, known, names, revision, build):
-    """The table of ratios."""
-    old = digest(ROOT / program_of(build=build))[:16]
-    lab, contenders = shelf.open_shelf(folder, "against", known, options.only, names, scenes=options.scenes, old=old)
-    there = _variants_of(build)
-    rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
-            for one in contenders if one.variant not in there for scene in options.scenes]
-    for scene in options.scenes:
-        for group in by_environment(one for one in contenders if one.variant in there).values():
-            rows += _ratios(lab, scene, group, options.rounds, build, revision)
-    lab.display.end()
-    return shelf.table(rows, "ratios")
 
 
 def _variants_of(build):

@@ -41,7 +41,19 @@ def store(arguments):
         if len(stored := sorted(path.parent.name for path in RESULTS.glob("*/set.json"))) >= MOST:
             raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
         pictures = _build(studyset, name)
-    _tell(folder, name, pictures)
+    files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
+    print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
+    if (folder / "added").exists():
+        print("what study/add measured stays where it is: it is of another tree")
+    try:
+        for path in fragments.refresh():
+            print(f"filled anew: {path.relative_to(ROOT)}")
+    except StudyError as error:
+        print(f"texts are not filled anew: {error}")
+    print(f"to commit it: git add results/{name}")
+    if pictures:  # others that study/figures draws are ignored
+        print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
+    print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")
     return 0
 
 
@@ -127,19 +139,3 @@ def _build(studyset, name):
     finally:
         shutil.rmtree(building, ignore_errors=True)
     return pictures
-
-
-def _tell(folder, name, pictures):
-    files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
-    print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
-    if (folder / "added").exists():
-        print("what study/add measured stays where it is: it is of another tree")
-    try:
-        for path in fragments.refresh():
-            print(f"filled anew: {path.relative_to(ROOT)}")
-    except StudyError as error:
-        print(f"texts are not filled anew: {error}")
-    print(f"to commit it: git add results/{name}")
-    if pictures:  # others that study/figures draws are ignored
-        print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
-    print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")

@@ -56,7 +56,14 @@ def sweep(arguments):
     name = options.output or re.sub(r"(\.csv)?(\.gz)?$", "", Path(options.table).name) + ".png"
     if not name.endswith(".png") or Path(name).resolve() == Path(options.table).resolve():
         raise StudyError(f"--output: found {name!r}, allowed is another file that ends with .png")
-    draw(table, parameters, result, over, name)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(5 + 1.2 * len(parameters) + 6, 5), layout="constrained",
+                                         width_ratios=(4 + 1.2 * len(parameters), 6))
+    lines(left, table, [*parameters, result])
+    if len(over) == 2:
+        surface(right, table, over, result)
+    else:
+        curve(right, table, over[0], result)
+    style.save(figure, name)
     failed = int((~table["finished"]).sum())
     print(f"{name}: {result} of {len(table)} lanes" + (f", {failed} of them failed" if failed else ""))
     return 0
@@ -86,17 +93,6 @@ def read(path, of):
                          f"{', '.join(parameters)}, and a status")
     table["finished"] = table["status"].isin(FINISHED)
     return table, parameters, result
-
-
-def draw(table, parameters, result, over, path):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(5 + 1.2 * len(parameters) + 6, 5), layout="constrained",
-                                         width_ratios=(4 + 1.2 * len(parameters), 6))
-    lines(left, table, [*parameters, result])
-    if len(over) == 2:
-        surface(right, table, over, result)
-    else:
-        curve(right, table, over[0], result)
-    style.save(figure, path)
 
 
 def lines(axes, table, columns):

@@ -1,6 +1,8 @@
 # The answer as JSON (its keys: README.md) and as text.
+from pathlib import Path
+
 from analysis.core.outcomes import FINISHED, GOOD
-from analysis.core.text import number
+from analysis.core.text import layout, number
 from study.tools.advise.choice import counts, halvings
 from study.tools.advise.probe import catalogue, fits, serving
 from study.tools.advise.runner import advised, within
@@ -113,21 +115,8 @@ def _why_not(advice):
 
 
 def text(answer):
-    asked, runs = answer["question"], answer["runs"]
-    lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
-             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
-             + (f", in steps of {asked['step']:g} s" if asked["step"] else ""), ""]
-    lines += _advice_lines(answer) if answer["met"] else [f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
-    tried = (f"{sum(bool(one['pilots']) for one in answer['settings'])} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
-             f"{len({run['implementation'] for run in runs})} implementations, "
-             f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
-    left_out = [f"{len(answer['left_out'])} implementations, slower by the rule of mbs describe or unknown to it"] if answer["left_out"] else []
-    return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [tried]), *_rows("left out", left_out), *_rows("raw files", [answer["results"]])])
-
-
-def _rows(name, values):
-    """A line each, the first one with the name."""
-    return [f"  {name if at == 0 else '':22}{value}" for at, value in enumerate(values)]
+    return layout(Path(__file__).with_name("answer.txt.j2")).render(
+        answer, number=number, spread=_spread, error=_error, ends_as=_ends_as, in_time=in_time, most_refused=MOST_REFUSED)
 
 
 def _spread(value, interval, unit, scale=1.0):
@@ -138,28 +127,6 @@ def _error(error):
     """The error against the exact motion decides where that is known: it may be met where the estimate is not."""
     estimate = _spread(error["estimate"], error, "m")
     return estimate if error["exact"] is None else f"{number(error['exact'])} m, from the exact motion; by half the step {estimate}"
-
-
-def _advice_lines(answer):
-    told, second = answer["advice"], answer["runner_up"]
-    step, times = told["step_us"], told["us_per_second"]
-    rows = {"implementation": [told["implementation"]], "settings": [told["setting"]], "step": [f"{told['step']:g} s"],
-            "penalty factor": [f"{number(told['penalty'], 4)}, automatic"], "tolerance": [f"{number(told['tolerance'])} m"],
-            "precision": [told["precision"]], "expected error": [f"{_error(told['error'])}, verified over {told['verified_over']:g} s"],
-            "but": [told["branch_doubt"]] if told["branch_doubt"] else [], "ends as": _ends_as(told),
-            "time per step": [f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
-                              f"round{'s' * (told['rounds'] > 1)} over the first {told['timed_over']:g} s"
-                              + f" of step {told['timed_step']:g} s" * (told["timed_step"] != told["step"])
-                              + f"; with them, over {told['verified_over']:g} s, mean {number(step['mean'])} us, 99th percentile {number(step['p99'])} us"],
-            "per simulated second": [_spread(times["median"], times, "ms", 1e-3)]}
-    if told["deadline_misses"] is not None:
-        limit = number(in_time(told["step"], answer["question"]["deadline_us"]))
-        rows["deadline"] = [f"{told['deadline_misses']} of {told['steps']} steps of this very line took longer than {limit} us"]
-    if second:
-        rows["runner-up"] = [f"{second['implementation']}, {second['setting']}, step {second['step']:g} s", second["why"]]
-    rows["faster, but refused"] = [f"{one['setting']}, step {one['step']:g} s: {one['why']}" for one in answer["refused"][:MOST_REFUSED]]
-    return ["Run this (--half-step checks its error):", "", f"  {told['command']}", "",
-            *(line for name, values in rows.items() for line in _rows(name, values))]
 
 
 def _ends_as(told):

@@ -3,11 +3,10 @@ import datetime
 import subprocess
 from pathlib import Path
 
-import jinja2
 import pandas
 
 from analysis.core.files import ROOT, write, write_text
-from analysis.core.text import number
+from analysis.core.text import layout, number
 
 QUESTIONS, SEARCHED, PAGE = "validation.csv", "searched.csv.xz", "README.md"
 BEGUN = {".lock", "scenes", QUESTIONS, SEARCHED, PAGE}  # its folder
@@ -56,19 +55,15 @@ def sentence(table):
 def page(table):
     asked = table[table.asked]
     ok = held(asked)
-    kinds = [_kind(kind, rows, ok.loc[rows.index]) for kind, rows in asked.groupby("kind")]
+    kinds = [[kind, rows.scene.nunique(), ", ".join(map(str, sorted(set(rows.n)))), len(rows), good.accurate.sum(), good.fast.sum(),
+              number(rows.ratio.max()), good.soon.sum(), number(rows.seconds.max(), 2), number(100 * rows.others.max(), 2),
+              "; ".join(f"{name} ({times})" for name, times in rows.advised_setting.dropna().value_counts().items())]
+             for kind, rows in asked.groupby("kind") for good in [ok.loc[rows.index]]]
     failed = [_failed(row) for row in asked[~ok.all(axis=1)].itertuples()]
     others = [(scene, ", ".join(map(number, rows.error))) for scene, rows in table[~table.asked].groupby("scene")]
     origins = [(*key, rows.scene.nunique()) for key, rows in table.groupby(["commit", "processor", "date"])]
-    text = Path(__file__).with_name("page.md.j2").read_text(encoding="utf-8")
-    return jinja2.Template(text, trim_blocks=True, undefined=jinja2.StrictUndefined).render(
+    return layout(Path(__file__).with_name("page.md.j2")).render(
         sentence=sentence(table), kinds=kinds, failed=failed, others=others, origins=origins, most=MOST, latest=LATEST)
-
-
-def _kind(kind, rows, ok):
-    return [kind, rows.scene.nunique(), ", ".join(map(str, sorted(set(rows.n)))), len(rows), ok.accurate.sum(), ok.fast.sum(),
-            number(rows.ratio.max()), ok.soon.sum(), number(rows.seconds.max(), 2), number(100 * rows.others.max(), 2),
-            "; ".join(f"{name} ({times})" for name, times in rows.advised_setting.dropna().value_counts().items())]
 
 
 def _failed(row):

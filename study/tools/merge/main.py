@@ -3,13 +3,15 @@ import base64
 
 import matplotlib.pyplot as plt
 import pandas
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.site import template
-from analysis.core.style import save
+from analysis.core.style import Look, number_axis, save
 from study.core.options import Parser, directory
 from study.core.studyset import opened
-from study.tools.merge import agreement, figure, machine
+from study.tools.merge import agreement, machine
 
 ORDER = {"differs": 0, "several": 1, "decided": 2}  # of rows: what a reader looks for comes first
 
@@ -67,13 +69,28 @@ def merge(arguments):
 
 
 def _drawn(libraries, sets, path):
-    """The picture's file in base 64; None without mechanisms."""
+    """The picture's file in base 64; None without mechanisms. A mark a mechanism, by size and non-zeros a column of its factor, in the colour of the
+    library that loses least on the machine where it is worst; hatched where no library is among the best on all machines."""
     if not libraries:
         return None
-    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene")
-    drawn = figure.mechanisms(libraries, features.reindex([one.question.scene for one in libraries]), sets[0].registry)
-    save(drawn, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
-    plt.close(drawn)
+    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene").reindex([one.question.scene for one in libraries])
+    look, shown = Look(sets[0].registry), {}
+    figure, axes = plt.subplots(figsize=(8.6, 5.4))
+    for one in filter(lambda one: one.robust, libraries):
+        known, colour = features.loc[one.question.scene], look.colour(one.robust)
+        shown[one.robust] = colour
+        differs = one.verdict == "differs"
+        axes.scatter(known.n, known.per_column, s=70, facecolor="white" if differs else colour, edgecolor=colour, hatch="/////" if differs else None)
+    for axis in (axes.xaxis, axes.yaxis):
+        number_axis(axis)
+    axes.set(xlabel="variables n", ylabel="non-zeros a column of the factor L (AMD's order)", title="The library that loses least on the machine where it is worst")
+    axes.grid(True, which="major")
+    axes.set_axisbelow(True)
+    handles = [Line2D([], [], marker="o", linestyle="none", markersize=8, color=colour, label=name) for name, colour in sorted(shown.items())]
+    hatched = Patch(facecolor="white", edgecolor="#444444", hatch="/////", label="depends on the machine")
+    axes.legend(handles=[*handles, hatched], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
+    save(figure, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
+    plt.close(figure)
     return base64.b64encode(path.read_bytes()).decode()
 
 

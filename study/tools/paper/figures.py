@@ -27,11 +27,6 @@ NOTHING = "Not measured in this set."
 MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")  # of the libraries that lead on most mechanisms
 
 
-def figures(known):
-    """{name: figure}, each as wide as the paper's text"""
-    return {name: fit(draw(known), height) for name, (draw, height) in DRAWN.items()}
-
-
 def own_fill(known):
     figure = maps.sparse(known.results, Look(known.registry))
     for text in figure.texts:  # which the caption says

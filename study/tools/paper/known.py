@@ -1,5 +1,4 @@
 # What the paper is built from: the tables of one set, and the other stored sets.
-import importlib
 from functools import cache, cached_property
 
 from analysis.core import schema
@@ -30,8 +29,3 @@ class Known(Folder):
 
     def view(self, part):
         return View(self.folder, part)
-
-    def said(self, part):
-        """Texts of the part's own answers."""
-        module = importlib.import_module(f"analysis.{part}.sentences")
-        return [one["text"] for one in module.answers(self.tables(part), self.view(part))]

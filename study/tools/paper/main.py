@@ -3,6 +3,7 @@ import os
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 from analysis.core.files import ROOT, StudyError, write_json, write_text
 from analysis.core.style import save
@@ -59,13 +60,13 @@ def write_parts(known, found, claimed):
     words = {True: "yes", False: "no", None: "unknown"}
     lines = [rf"\csdef{{number@{name}}}{{{tables.tex(one.text)}}}" for name, one in found.items()]
     lines += [rf"\csdef{{claim@{name}}}{{{words[holds]}}}" for name, (holds, _) in claimed.items()]
-    write_text(audit.BUILD / "numbers.tex", MACROS + "\n".join(lines) + "\n")
-    for name, text in tables.tables(known).items():
-        write_text(audit.BUILD / f"table-{name}.tex", text + "\n")
+    write_text(audit.BUILD / "numbers.tex", Path(__file__).with_name("macros.tex").read_text(encoding="utf-8") + "\n".join(lines) + "\n")
+    for name in tables.TABLES:
+        write_text(audit.BUILD / f"table-{name}.tex", getattr(tables, name)(known) + "\n")
     write_text(audit.BUILD / "table-numbers.tex", tables.of_numbers(found))
     print("drawing", flush=True)
-    for name, figure in figures.figures(known).items():
-        save(figure, audit.BUILD / f"figure-{name}.pdf")
+    for name, (draw, height) in figures.DRAWN.items():
+        save(figures.fit(draw(known), height), audit.BUILD / f"figure-{name}.pdf")
     write_json(audit.STAMP, audit.stamp(known))
 
 
@@ -81,10 +82,3 @@ def build():
     wrong += [f"it should have {LEAST} to {MOST} pages"] * (not LEAST <= pages <= MOST)
     print(f"paper: {audit.BUILD / 'paper.pdf'}, {pages} pages", *wrong, sep="\npaper: ")
     return int(bool(wrong))
-
-
-MACROS = r"""% Made by study/paper: the numbers and claims of its set.
-\DeclareRobustCommand{\val}[1]{\ifcsdef{number@#1}{\hyperlink{where:#1}{\csuse{number@#1}}}{\PackageError{paper}{no number #1}{}}}
-\DeclareRobustCommand{\holds}[1]{\ifcsstring{claim@#1}{yes}{}{\PackageError{paper}{the claim #1 does not hold}{}}}
-\DeclareRobustCommand{\either}[4]{\ifcsstring{claim@#1}{yes}{#2}{\ifcsstring{claim@#1}{no}{#3}{\ifcsstring{claim@#1}{unknown}{#4}{\PackageError{paper}{no claim #1}{}}}}}
-"""

@@ -11,9 +11,11 @@ from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
 from analysis.core.text import number, span
 from analysis.engines.sentences import compared, medians
+from analysis.extremes import sentences as extremes
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
+from analysis.realtime import sentences as realtime
 from study.core import profile as profiles
 from study.tools.merge import agreement, machine
 
@@ -240,16 +242,12 @@ def _rule(known):
     one = rules.summary(held) if len(held) else defaultdict(float)
     unknown = f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else ""
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
+    elsewhere = pandas.concat([held[:0], *(other.tables("families")["held"] for other in known.compared[1:])]).nlargest(1, "loss")
     return each("families/held", held, mean=percent(one["mean_loss"], 1), worst=percent(one["worst_loss"]) + unknown, within=percent(one["within"]),
                 families=one["families"], scenes=one["scenes"]) | {
-        "elsewhere": _elsewhere(known.compared[1:]), "carried": _carried(known, known.compared[1:]), "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
+        "elsewhere": of_rows(percent(elsewhere.loss.max()), "families/held", elsewhere), "carried": _carried(known, known.compared[1:]),
+        "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
         "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
-
-
-def _elsewhere(others):
-    """The worst loss of the rules that other sets give."""
-    held = pandas.concat([one.tables("families")["held"] for one in others]) if others else pandas.DataFrame()
-    return of_rows(percent(held.loss.max()), "families/held", held.nlargest(1, "loss")) if len(held) else None
 
 
 def _carried(known, others):
@@ -293,7 +291,8 @@ def _window(known):
 
 def _latency(known):
     null = known.tables("realtime")["machine"].loc[lambda rows: rows.status == "done"]
-    said = " ".join(one for one in known.said("realtime") if one.startswith("Steps of"))
+    answers = realtime.answers(known.tables("realtime"), known.view("realtime"))
+    said = " ".join(one["text"] for one in answers if one["text"].startswith("Steps of"))
     return each("realtime/machine", null, lost=number(null.lost.sum(), 5), gap=number(null.largest_us.max()), watched=number(null.seconds.sum())) | {
         "said": of_rows(said, "realtime/largest", known.tables("realtime")["largest"])}
 
@@ -313,7 +312,8 @@ def _own(known):
 
 
 def _limits(known):
-    said = " ".join(known.said("extremes")[:1]).partition(" Other false alarms:")[0]  # which the part's page names, run by run
+    first, *_ = extremes.answers(known.tables("extremes"), known.view("extremes"))
+    said = first["text"].partition(" Other false alarms:")[0]  # which the part's page names, run by run
     return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", known.tables("extremes")["battery"])}
 
 

@@ -15,8 +15,7 @@ from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import ledger, summary
 from study.tools.merge import machine
-from study.tools.paper import numbers
-from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real_mechanisms
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -34,22 +33,15 @@ DEFAULTS = 6    # of other tools: the least costly and the two most costly
 MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
 GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
+# Functions of Known, which give LaTeX.
 TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "leaves", "defaults", "largest", "engines", "mechanisms")
-
-
-def tables(known):
-    """{name: LaTeX}"""
-    return {name: globals()[name](known) for name in TABLES}
 
 
 def of_numbers(found):
     """The appendix: an entry a number, to which its uses link."""
+    records = lambda one: one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "") if one.records else ""
     return "".join(rf"\numberentry{{\hypertarget{{where:{name}}}{{{tex(name)}}}}}{{{tex(shorten(one.text, 28, placeholder=' …'))}}}"
-                   rf"{{{tex('; '.join(filter(None, (one.table, _records(one)))))}}}" + "\n" for name, one in found.items())
-
-
-def _records(one):
-    return "" if not one.records else one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
+                   rf"{{{tex('; '.join(filter(None, (one.table, records(one)))))}}}" + "\n" for name, one in found.items())
 
 
 def table(rows, columns, long=False):
@@ -64,13 +56,10 @@ def table(rows, columns, long=False):
 def contenders(known):
     """Who takes part, and what was tried for each."""
     registry, tried = known.registry, known.tables("tuning")["alternatives"].loc[lambda rows: rows.status == "ok"]
-    rows = []
-    for name, one in registry.variants.items():
-        if name not in registry.examples:
-            mine = tried[tried.base == name]
-            rows.append((name, "none: own" if name in registry.own else one["library"], one["description"],
-                         "yes" if one.get("role") == "paper" else "no", mine.alternative.nunique(),
-                         f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"))
+    rows = [(name, "none: own" if name in registry.own else one["library"], one["description"],
+             "yes" if one.get("role") == "paper" else "no", mine.alternative.nunique(),
+             f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–")
+            for name, one in registry.variants.items() if name not in registry.examples for mine in [tried[tried.base == name]]]
     return table(rows, {"variant": r"P{30mm}", "library": r"P{26mm}", "form": r"P{74mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
 
 
@@ -88,11 +77,9 @@ def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
     mine, lost, results = led(real_mechanisms(known)), losses(known), known.results
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
-    rows = []
-    for name, one in [*lost.items()][:RANKED]:
-        price = prices.get(name)
-        rows.append((name, mine.get(name, 0), len(one), number(gmean(one)), number(one.max()), one.idxmax(), *(
-            (number(price["mean"]), number(price["worst"]), f"{price['cells']} of {price['of']}", price["rough"]) if price else ["–"] * 4)))
+    rows = [(name, mine.get(name, 0), len(one), number(gmean(one)), number(one.max()), one.idxmax(), *(
+        (number(price["mean"]), number(price["worst"]), f"{price['cells']} of {price['of']}", price["rough"]) if price else ["–"] * 4))
+            for name, one in [*lost.items()][:RANKED] for price in [prices.get(name)]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"}
                  | dict.fromkeys(("map: mean", "map: worst", "cells", "by pilot"), "r"))
 
@@ -100,27 +87,20 @@ def ranking(known):
 def claims(known):
     """The claims of 2008, with theirs, ours in each set and the verdict; below, those without."""
     beside = {one.folder.name: one.tables("map")["claims"].set_index(["id", "claim"]) for one in known.sets[1:]}
-    rows, without = [], {}
+    ours = lambda row: "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    rows, without = [], {}  # those without a verdict by id and reason
     for row in known.tables("map")["claims"].itertuples():
         theirs = [its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None for its in beside.values()]
         verdicts = [row.verdict, *(one.verdict for one in theirs if one is not None)]
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
             without.setdefault((row.id, row.reason), []).append(row.claim)
         else:
-            rows.append((row.id, row.claim, row.paper, *map(_ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
+            rows.append((row.id, row.claim, row.paper, *map(ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
     heads = dict.fromkeys((known.folder.name, *beside), r"P{%.0fmm}" % (44 / len(known.sets)))
-    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True) + _without(without)
-
-
-def _without(found):
-    """Claims that have no verdict, by reason: {(id, reason): [claim]}"""
-    said = (f"{name}: {claims[0]}" + (f", and {len(claims) - 1} more" if len(claims) > 1 else "") + f" ({reason.rstrip('.')})"
-            for (name, reason), claims in found.items())
-    return "\n" + tex(f"No verdict: {'; '.join(said)}.") + r"\par" if found else ""
-
-
-def _ours(row):
-    return "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    said = (f"{name}: {some[0]}" + (f", and {len(some) - 1} more" if len(some) > 1 else "") + f" ({reason.rstrip('.')})"
+            for (name, reason), some in without.items())
+    return (table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
+            + ("\n" + tex(f"No verdict: {'; '.join(said)}.") + r"\par" if without else ""))
 
 
 def machines(known):
@@ -134,13 +114,13 @@ def machines(known):
 
 
 def _machine(one):
-    real, cells, control = numbers.real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
+    found, cells, control = real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
     measured = machine.rates(one)
     return {"processor": one.context["cpu_model"], "measured on": one.facts["date"][:10],
             "pairs timed against themselves, of these decided, which is false": f"{control['pairs']}, {control['false']}",
-            "mechanisms that are settled": f"{real['said'].text} of {real['mechanisms'].text}",
-            "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
-            "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
+            "mechanisms that are settled": f"{found['said'].text} of {found['mechanisms'].text}",
+            "library that is fastest or as fast most often": f"{found['leader'].text} on {found['leads'].text}",
+            "best single library: mean and worst loss": f"{found['single'].text}: {found['mean'].text}, {found['worst'].text}",
             "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
         text: number(measured.get(name)) for name, text in machine.RATES.items() if name in measured and name not in ("L2", "L3")}
 

@@ -1,15 +1,27 @@
-// Describes @NAME@ to the harness.
+// Describes @name@ to the harness.
 #include "mbs/implementation.hpp"
 
 #include <memory>
 #include <string>
 
 #include "simulation.hpp"
-@ILAVER@
-namespace mbs::@NAME@ {
+
+@% if library == "blas" %@
+extern "C" void ilaver_(int* major, int* minor, int* patch);
+
+@% endif %@
+namespace mbs::@name@ {
 namespace {
 
-@LAPACK@std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+@% if library == "blas" %@
+std::string lapack_version() {
+  int major = 0, minor = 0, patch = 0;
+  ilaver_(&major, &minor, &patch);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+@% endif %@
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
   return std::make_unique<Stepper>(model, settings);
 }
 
@@ -18,9 +30,19 @@ namespace {
 Implementation implementation() {
   return {
       .description = "TODO: storage and algorithm in a line",
-      .library = "@LIBRARY@",
-      .version = @VERSION@,
-      .licence = "@LICENCE@",
+@% if library == "none" %@
+      .library = "none",
+      .version = "",
+      .licence = "",
+@% elif library == "eigen" %@
+      .library = "Eigen",
+      .version = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION),
+      .licence = "MPL-2.0",
+@% else %@
+      .library = "LAPACK",
+      .version = lapack_version(),
+      .licence = "BSD-3-Clause",
+@% endif %@
       .variants = {{.name = "first",
                     .description = "TODO: what this variant does in a line",
                     .create = create,
@@ -29,4 +51,4 @@ Implementation implementation() {
   };
 }
 
-}  // namespace mbs::@NAME@
+}  // namespace mbs::@name@

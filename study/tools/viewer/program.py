@@ -49,9 +49,10 @@ def from_description(description, name):
         helpers = [bool(point["helper"]) for point in elements["points"]]
         start = [[float(x) for x in point["position"]] for point in elements["points"]]
         index = {name: place for place, (name, _) in enumerate(points)}
-        rods = _pairs(index, elements["rods"])
-        rods += [link for link in _pairs(index, elements["distances"]) if link not in rods and link[::-1] not in rods]
-        springs = _pairs(index, elements["springs"] + elements.get("force_laws", []))
+        pairs = lambda elements: [[index[first], index[second]] for first, second in (one["between"] for one in elements)]
+        rods = pairs(elements["rods"])
+        rods += [link for link in pairs(elements["distances"]) if link not in rods and link[::-1] not in rods]
+        springs = pairs(elements["springs"] + elements.get("force_laws", []))
         bodies = [Body(body["name"], [index[point] for point in body["points"]], [index[vector] for vector in body.get("vectors", [])])
                   for body in elements["bodies"]]
         torsion_springs = [tuple([index[name] for name in spring[side]] for side in ("from", "to"))
@@ -65,10 +66,6 @@ def from_description(description, name):
     facts = ", ".join(text.format(description[key]) for text, key in known.items() if description.get(key) is not None)
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs, list(elements.get("outputs", [])), facts,
                  math.inf if end is None else float(end), description.get("scheme", {}).get("take", "penalty"))
-
-
-def _pairs(index, elements):
-    return [[index[first], index[second]] for first, second in (one["between"] for one in elements)]
 
 
 def upward(path):
