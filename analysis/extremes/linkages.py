@@ -127,7 +127,7 @@ class Linkage(Motion):
         return found
 
     def angles(self, times):
-        return self.start + self.rate * times if self.driven else _turned(self, float(numpy.ceil(times[-1])))(times)
+        return self.start + self.rate * times if self.driven else _turned(self, float(max(1.0, numpy.ceil(times[-1]))))(times)
 
     def solutions(self, times):
         at, way = self.at(self.angles(times)), self.carried * times

@@ -103,7 +103,7 @@ def test_trials_are_many_mechanisms_of_many_kinds():
     assert len({(cell.axis, cell.label) for cell in found}) > 300 and len({cell.axis for cell in found}) > 12
     assert {cell.near for cell in found if cell.axis.startswith("driven")} == set(trials.DISTANCES)
     for cell in found:
-        assert cell.scene or json.dumps(cell.document, allow_nan=False) and cell.length > 0
+        assert cell.columns and (cell.scene or json.dumps(cell.document, allow_nan=False) and cell.length > 0)
         assert f"{cell.step:g}" == f"{float(f'{cell.step:g}'):g}" and cell.steps * cell.step < 101
     runs = trials.few(found, 5, 40)
     assert len(runs) == 45 == len(set(runs)) and all(cell.axis in trials.STANDARD for cell, _ in runs[:5])
