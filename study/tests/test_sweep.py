@@ -56,6 +56,35 @@ def test_numbers_are_not_crossed_by_their_axis(tmp_path):
     pyplot.close(figure)
 
 
+def test_a_result_of_a_lane_that_failed_does_not_count(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv"), None)
+    found.loc[5, result] = 1e6  # got so far
+    figure, (left, right) = pyplot.subplots(1, 2)
+    sweep.lines(left, found, [*parameters, result])
+    finished, failed = left.collections
+    assert [text.get_text() for text in left.texts][-2:] == ["6", "0"] and failed.get_segments()[0][-1, 1] == -0.12
+    assert finished.get_clim() == (0, 1) and finished.get_array().max() == 1
+    sweep.surface(right, found, ["k", "m"], result)
+    assert numpy.ma.filled(right.collections[0].get_array(), numpy.nan).reshape(3, 4)[2, 3] == right.collections[0].get_clim()[1] == 6
+    found["finished"] = False  # then there is nothing else
+    figure, axes = pyplot.subplots()
+    sweep.lines(axes, found, [*parameters, result])
+    assert axes.texts[-2].get_text() == "1e+06"
+    pyplot.close("all")
+
+
+def test_the_lanes_that_are_drawn_have_no_relation_that_a_grid_has_not(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv", 2 * sweep.LINES + 1, HEAD.replace("k,m", "m,k")), None)
+    found["m"], found["finished"] = found.index % 2, True
+    figure, axes = pyplot.subplots()
+    sweep.lines(axes, found, ["k", "m", result])
+    ends = numpy.array(axes.collections[0].get_segments())[:, :2, 1]
+    assert len(ends) == sweep.LINES and abs(numpy.corrcoef(ends.T)[0, 1]) < 0.1
+    pyplot.close(figure)
+
+
 def test_cells_are_of_values_or_of_one_width():
     assert sweep.edges(numpy.array([1.0, 4, 2])).tolist() == [0.5, 1.5, 3, 5]
     for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy
 import pandas
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
 from scipy.stats import binned_statistic_2d
 
 from analysis.core import style
@@ -101,15 +102,19 @@ def draw(table, parameters, result, over, path):
 
 def lines(axes, table, columns):
     """Each lane a line over axes of its own scale; the colour goes by the last column."""
-    low, high = table[columns].min(), table[columns].max()
+    result, low, high = columns[-1], table[columns].min(), table[columns].max()
+    known = counted(table, result)
+    low[result], high[result] = table.loc[known, result].min(), table.loc[known, result].max()
     shares = (table[columns] - low) / (high - low).where(high > low, 1)
-    shares[columns[-1]] = shares[columns[-1]].fillna(-0.12)  # a lane without a result ends below
+    shares[result] = shares[result].where(known, -0.12)  # a lane whose result does not count ends below
     places = numpy.arange(len(columns))
     for finished in (True, False):
         chosen = shares[table["finished"] == finished]
-        chosen = chosen.iloc[numpy.unique(numpy.linspace(0, len(chosen) - 1, min(LINES, len(chosen))).astype(int))]
+        if len(chosen) > LINES:  # at random: rows at one distance go with the periods of a grid
+            chosen = chosen.sample(LINES, random_state=0)
         ways = numpy.stack([numpy.broadcast_to(places, chosen.shape), chosen.to_numpy()], axis=2)
-        look = {"array": chosen[columns[-1]].to_numpy(), "cmap": plt.get_cmap("viridis")} if finished else {"color": FAILED}
+        look = ({"array": chosen[result].to_numpy(), "cmap": plt.get_cmap("viridis"), "norm": Normalize(0, 1)} if finished else
+                {"color": FAILED})
         axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look, zorder=1 if finished else 2))
     axes.set(xlim=(-0.3, len(columns) - 0.7), ylim=(-0.2, 1.12), xticks=places, yticks=[])
     axes.set_xticklabels(columns, rotation=20, ha="right")
@@ -123,10 +128,16 @@ def lines(axes, table, columns):
     axes.set_title(title + ("" if table["finished"].all() else "; red: failed"))
 
 
+def counted(table, result):
+    """Which lanes' results count: of those that finished, where there are any. One that failed has that of a part of its motion."""
+    there = table[result].notna()
+    return there & table["finished"] if (there & table["finished"]).any() else there
+
+
 def surface(axes, table, over, result):
     """Median of the result in each cell of two parameters; a cross where a lane failed."""
     bins = [edges(table[name].to_numpy()) for name in over]
-    known, failed = table[table[result].notna()], table[~table["finished"]]
+    known, failed = table[counted(table, result)], table[~table["finished"]]
     values = binned_statistic_2d(known[over[0]], known[over[1]], known[result], "median", bins).statistic
     lost = numpy.argwhere(numpy.histogram2d(failed[over[0]], failed[over[1]], bins)[0])
     axes.figure.colorbar(axes.pcolormesh(*bins, values.T, cmap="viridis"), ax=axes, label=result)
