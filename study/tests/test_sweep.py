@@ -118,7 +118,7 @@ def profile(tmp_path):
     folder = tmp_path / "profile"
     folder.mkdir()
     array = ('for i in $(seq "$1"); do bash "$2" "$i" > log-"$i" 2>&1; done; ls done-* > .cluster/all; '
-             '[ ! -e done-"$1" ] || { mv done-"$1" .cluster; (sleep 2; mv .cluster/done-"$1" .) > /dev/null 2>&1 & }; echo all')
+             '[ ! -e done-1 ] || { mv done-1 .cluster; (sleep 1; mv .cluster/done-1 .) > /dev/null 2>&1 & }; echo all')
     status = '[ "$(wc -l < .cluster/all)" = 2 ] && echo success || echo failed'
     for name, text in {"array": array, "submit": "", "status": status, "cancel": "", "config.yaml": ""}.items():
         (folder / name).write_text(f"#!/bin/bash\n{text}\n")
@@ -145,10 +145,70 @@ def test_a_cluster_gives_the_table_of_these_words_only(tmp_path, profile):
     for _ in range(2):  # the second one only draws
         assert made("-12,-11").returncode == 0
         assert [line.partition(",")[0] for line in path.read_text().splitlines()[1:]] == ["-12", "-11"]
-        assert {one.name for one in (tmp_path / "t.csv.parts").iterdir()} == {"part.sh", ".lock", ".cluster"}
+        assert {one.name for one in (tmp_path / "t.csv.parts").iterdir()} == {"part.sh", "made", ".lock", ".cluster"}
     before, other = path.read_bytes(), made("-9,-8")
     assert (other.returncode, path.read_bytes()) == (2, before) and "did not make" in other.stderr
     path.rename(tmp_path / "mine.csv")
     path.write_text("mine")  # nor what nobody made
     (tmp_path / "t.csv.parts/part.sh").unlink()
     assert made("-12,-11").returncode == 2 and path.read_text() == "mine"
+
+
+# A part is the scene; FAILS is the part that fails.
+FAKE = """#!/bin/bash
+for word; do [ "$last" = --output ] && output=$word; last=$word; done
+case " $* " in
+  *" --check "*) ! grep mbs: s.json >&2 || exit 2 ;;
+  *" --shard $FAILS/2 "*) echo mbs: lost; exit 2 ;;
+  " merge-sweep "*) cat "$2" "$3" > "$output" ;;
+  *) cat s.json > "$output"; exit 1 ;;
+esac
+"""
+
+
+@pytest.fixture
+def make(tmp_path, profile, monkeypatch):
+    """Makes t.csv of s.json by a stand-in for the program."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "mbs"))
+    (tmp_path / "s.json").write_text("scene\n")
+    (tmp_path / "mbs").write_text(FAKE)
+    (tmp_path / "mbs").chmod(0o755)
+    return lambda: sweep.on_cluster(["s.json", "--vary", f"k={'1,' * 200}2"], "t.csv", 2, profile)
+
+
+@pytest.mark.parametrize("name", ["s.json", "mbs", "t.csv"])
+def test_a_table_of_another_scene_or_program_is_none_of_this_command(tmp_path, make, name):
+    make()
+    assert (tmp_path / "t.csv").read_text() == "scene\n" * 2
+    path = tmp_path / name
+    before = path.read_text()
+    path.write_text(before + "# changed\n")
+    with pytest.raises(StudyError, match="t.csv: found a file that this command did not make with this scene and this program"):
+        make()
+    path.write_text(before)
+    make()  # there it is
+
+
+def test_a_table_that_came_while_a_part_is_missing_is_none_of_this_command(tmp_path, make, monkeypatch):
+    monkeypatch.setenv("FAILS", "2")
+    with pytest.raises(StudyError, match="is not done"):
+        make()
+    monkeypatch.delenv("FAILS")
+    (tmp_path / "t.csv").write_text("of another sweep")
+    with pytest.raises(StudyError, match="did not make"):
+        make()
+    assert (tmp_path / "t.csv.parts/part-1").exists() and (tmp_path / "t.csv").read_text() == "of another sweep"
+
+
+def test_what_mbs_refuses_is_not_submitted(tmp_path, make):
+    (tmp_path / "s.json").write_text("mbs: no scene")
+    with pytest.raises(StudyError, match="mbs: no scene"):
+        make()
+    assert not (tmp_path / "t.csv.parts").exists()
+
+
+def test_the_part_that_failed_is_named_and_not_one_that_is_seen_late(make, monkeypatch):
+    monkeypatch.setenv("FAILS", "2")
+    with pytest.raises(StudyError, match="part 2 of 2 is not done: mbs: lost; the same command goes on"):
+        make()
