@@ -1,5 +1,6 @@
 # study/run and study/sweep --cluster on a real Slurm of two nodes on this machine: a node is lost, the run is interrupted.
 # Run by `study/test --cluster`.
+import re
 import signal
 import subprocess
 
@@ -109,4 +110,21 @@ def test_a_sweep_is_an_array_job(slurm, tmp_path):
     assert made.returncode == 0, made.stderr
     assert (tmp_path / "all.csv").read_bytes() == (tmp_path / "one.csv").read_bytes() and (tmp_path / "all.png").stat().st_size
     bad = study("sweep", tmp_path / "bad.csv", "--cluster", "slurm", "--parts", 2, "--", "nosuch:1", *words[1:], **slurm.environment)
-    assert bad.returncode == 2 and bad.stderr.startswith("study/sweep: part 1 of 2 is not done: ") and bad.stderr.count("\n") == 1
+    assert bad.returncode == 2 and bad.stderr.startswith("study/sweep: mbs: ") and "nosuch" in bad.stderr and bad.stderr.count("\n") == 1
+
+
+def test_a_job_does_not_wait_for_one_node_that_is_drained(slurm, tmp_path):
+    def said(name, *words):
+        return subprocess.run([ROOT / "study" / "cluster" / "slurm" / name, *words], cwd=tmp_path, env=environment(**slurm.environment),
+                              capture_output=True, text=True)
+    (tmp_path / ".cluster" / "refused").mkdir(parents=True)
+    (tmp_path / ".cluster" / "only").write_text("node1\n")
+    (tmp_path / "job").write_text("#!/bin/bash\n")
+    slurm.ask("scontrol", "update", "nodename=node1", "state=drain", "reason=a new disk")
+    try:
+        told = said("status", said("submit", "1", "job").stdout.strip())
+    finally:
+        slurm.ask("scontrol", "update", "nodename=node1", "state=resume")
+    assert told.stdout == "failed\n" and re.search("error: node1 takes no jobs: State=.*DRAIN.* Reason=a new disk", told.stderr), told
+    assert slurm.ask("squeue", "-h") == ""
+    assert said("status", said("submit", "1", "job").stdout.strip()).stdout in ("running\n", "success\n")
