@@ -96,6 +96,7 @@ def test_cells_are_of_values_or_of_one_width():
 @pytest.mark.parametrize("text, options, words", [
     (None, [], "no table can be read"), ("", [], "no table can be read"), ("a,b\n1,2\n", [], "found no lanes"),
     (HEAD, [], "found no lanes"), (HEAD + "1,2,ok" + "," * 11 + "\n", ["--of", "B"], "--of: found 'B'"),
+    (HEAD + "1,2,diverged" + "," * 11 + "\n", [], "--of: found 'constraint_violation_max', allowed are none: no lane has a result"),
     (HEAD + "x,2,ok" + ",0" * 11 + "\n", [], "k has something else"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,", [], "line 3: found a row that is cut short"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,2", [], "line 3: .* cut short"),

@@ -74,11 +74,11 @@ def read(path, of):
         raise StudyError(f"{path}: found no lanes, allowed is a table of `mbs sweep`")
     parameters = names[:names.index("status")]
     numbers = set(table.select_dtypes("number"))
-    results = [name for name in names[names.index("status"):] if name in numbers]
+    results = [name for name in names[names.index("status"):] if name in numbers and table[name].notna().any()]
     outputs = names[names.index("constraint_violation_max") + 1:] if "constraint_violation_max" in names else []
     result = of or next((name for name in outputs if name in results), "constraint_violation_max")
     if result not in results:
-        raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
+        raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results) or 'none: no lane has a result'}")
     if wrong := [name for name in parameters if name not in numbers]:
         raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
     broken = ~numpy.isfinite(table[parameters]).all(axis=1) | table["status"].isna()
