@@ -32,7 +32,8 @@ def dry_run(columns):
 
 
 def run(profile, only, chosen, folder, cluster, columns):
-    """Runs a set to its end, then those that nodes of another kind began beside it. `cluster`: the profile's folder."""
+    """Runs a set to its end, then those that nodes of another kind began beside it; not those of a failed control, which are no evidence and
+    wait for one node. `cluster`: the profile's folder."""
     with locks.only_one(folder):
         end_jobs(folder, cluster)
         _plan(profile, only, chosen, folder, columns)
@@ -47,6 +48,9 @@ def run(profile, only, chosen, folder, cluster, columns):
     for host, reason in refusals(folder).items():
         print(f"{host} is not of this set: {reason}")
     for own in own_sets(folder):
+        if (home(own) / "only").exists():
+            print(f"{own} is of one node whose A/A control failed, and no evidence: it is not run further (all the same: --results {own})")
+            continue
         print(f"a set of its own: {own}")
         run(profile, only, chosen, own, cluster, columns)
 

@@ -124,6 +124,17 @@ def test_a_failed_control_is_a_set_of_its_node(begun, monkeypatch):
     refused(StudySet(own), "it is that of first alone")
 
 
+def test_a_set_of_a_failed_control_is_run_only_if_it_is_named(begun, monkeypatch, capsys):
+    ran = []
+    monkeypatch.setattr(cluster, "_workflow", lambda studyset, *more: ran.append(studyset.folder))
+    monkeypatch.setenv("FAKE_NEW", f"{begun.contenders[0].name}+twin=9")
+    refused(begun, "its A/A control failed")
+    [own] = node.own_sets(begun.folder)
+    for folder in (begun.folder, own):
+        cluster.run(begun.profile, [], ["map"], folder, None, {"map": {}})
+    assert ran == [begun.folder, own] and f"{own} is of one node whose A/A control failed" in capsys.readouterr().out
+
+
 def test_a_control_that_does_not_run_is_no_passed_one(begun, monkeypatch):
     monkeypatch.setenv("FAKE_CRASH", f"{begun.contenders[0].name}+twin")
     refused(begun, "its A/A control does not run: crashed: SIGSEGV")

@@ -56,6 +56,35 @@ def test_numbers_are_not_crossed_by_their_axis(tmp_path):
     pyplot.close(figure)
 
 
+def test_a_result_of_a_lane_that_failed_does_not_count(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv"), None)
+    found.loc[5, result] = 1e6  # got so far
+    figure, (left, right) = pyplot.subplots(1, 2)
+    sweep.lines(left, found, [*parameters, result])
+    finished, failed = left.collections
+    assert [text.get_text() for text in left.texts][-2:] == ["6", "0"] and failed.get_segments()[0][-1, 1] == -0.12
+    assert finished.get_clim() == (0, 1) and finished.get_array().max() == 1
+    sweep.surface(right, found, ["k", "m"], result)
+    assert numpy.ma.filled(right.collections[0].get_array(), numpy.nan).reshape(3, 4)[2, 3] == right.collections[0].get_clim()[1] == 6
+    found["finished"] = False  # then there is nothing else
+    figure, axes = pyplot.subplots()
+    sweep.lines(axes, found, [*parameters, result])
+    assert axes.texts[-2].get_text() == "1e+06"
+    pyplot.close("all")
+
+
+def test_the_lanes_that_are_drawn_have_no_relation_that_a_grid_has_not(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv", 2 * sweep.LINES + 1, HEAD.replace("k,m", "m,k")), None)
+    found["m"], found["finished"] = found.index % 2, True
+    figure, axes = pyplot.subplots()
+    sweep.lines(axes, found, ["k", "m", result])
+    ends = numpy.array(axes.collections[0].get_segments())[:, :2, 1]
+    assert len(ends) == sweep.LINES and abs(numpy.corrcoef(ends.T)[0, 1]) < 0.1
+    pyplot.close(figure)
+
+
 def test_cells_are_of_values_or_of_one_width():
     assert sweep.edges(numpy.array([1.0, 4, 2])).tolist() == [0.5, 1.5, 3, 5]
     for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):
@@ -67,6 +96,7 @@ def test_cells_are_of_values_or_of_one_width():
 @pytest.mark.parametrize("text, options, words", [
     (None, [], "no table can be read"), ("", [], "no table can be read"), ("a,b\n1,2\n", [], "found no lanes"),
     (HEAD, [], "found no lanes"), (HEAD + "1,2,ok" + "," * 11 + "\n", ["--of", "B"], "--of: found 'B'"),
+    (HEAD + "1,2,diverged" + "," * 11 + "\n", [], "--of: found 'constraint_violation_max', allowed are none: no lane has a result"),
     (HEAD + "x,2,ok" + ",0" * 11 + "\n", [], "k has something else"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,", [], "line 3: found a row that is cut short"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,2", [], "line 3: .* cut short"),
@@ -89,7 +119,7 @@ def profile(tmp_path):
     folder = tmp_path / "profile"
     folder.mkdir()
     array = ('for i in $(seq "$1"); do bash "$2" "$i" > log-"$i" 2>&1; done; ls done-* > .cluster/all; '
-             '[ ! -e done-"$1" ] || { mv done-"$1" .cluster; (sleep 2; mv .cluster/done-"$1" .) > /dev/null 2>&1 & }; echo all')
+             '[ ! -e done-1 ] || { mv done-1 .cluster; (sleep 1; mv .cluster/done-1 .) > /dev/null 2>&1 & }; echo all')
     status = '[ "$(wc -l < .cluster/all)" = 2 ] && echo success || echo failed'
     for name, text in {"array": array, "submit": "", "status": status, "cancel": "", "config.yaml": ""}.items():
         (folder / name).write_text(f"#!/bin/bash\n{text}\n")
@@ -116,10 +146,70 @@ def test_a_cluster_gives_the_table_of_these_words_only(tmp_path, profile):
     for _ in range(2):  # the second one only draws
         assert made("-12,-11").returncode == 0
         assert [line.partition(",")[0] for line in path.read_text().splitlines()[1:]] == ["-12", "-11"]
-        assert {one.name for one in (tmp_path / "t.csv.parts").iterdir()} == {"part.sh", ".lock", ".cluster"}
+        assert {one.name for one in (tmp_path / "t.csv.parts").iterdir()} == {"part.sh", "made", ".lock", ".cluster"}
     before, other = path.read_bytes(), made("-9,-8")
     assert (other.returncode, path.read_bytes()) == (2, before) and "did not make" in other.stderr
     path.rename(tmp_path / "mine.csv")
     path.write_text("mine")  # nor what nobody made
     (tmp_path / "t.csv.parts/part.sh").unlink()
     assert made("-12,-11").returncode == 2 and path.read_text() == "mine"
+
+
+# A part is the scene; FAILS is the part that fails.
+FAKE = """#!/bin/bash
+for word; do [ "$last" = --output ] && output=$word; last=$word; done
+case " $* " in
+  *" --check "*) ! grep mbs: s.json >&2 || exit 2 ;;
+  *" --shard $FAILS/2 "*) echo mbs: lost; exit 2 ;;
+  " merge-sweep "*) cat "$2" "$3" > "$output" ;;
+  *) cat s.json > "$output"; exit 1 ;;
+esac
+"""
+
+
+@pytest.fixture
+def make(tmp_path, profile, monkeypatch):
+    """Makes t.csv of s.json by a stand-in for the program."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "mbs"))
+    (tmp_path / "s.json").write_text("scene\n")
+    (tmp_path / "mbs").write_text(FAKE)
+    (tmp_path / "mbs").chmod(0o755)
+    return lambda: sweep.on_cluster(["s.json", "--vary", f"k={'1,' * 200}2"], "t.csv", 2, profile)
+
+
+@pytest.mark.parametrize("name", ["s.json", "mbs", "t.csv"])
+def test_a_table_of_another_scene_or_program_is_none_of_this_command(tmp_path, make, name):
+    make()
+    assert (tmp_path / "t.csv").read_text() == "scene\n" * 2
+    path = tmp_path / name
+    before = path.read_text()
+    path.write_text(before + "# changed\n")
+    with pytest.raises(StudyError, match="t.csv: found a file that this command did not make with this scene and this program"):
+        make()
+    path.write_text(before)
+    make()  # there it is
+
+
+def test_a_table_that_came_while_a_part_is_missing_is_none_of_this_command(tmp_path, make, monkeypatch):
+    monkeypatch.setenv("FAILS", "2")
+    with pytest.raises(StudyError, match="is not done"):
+        make()
+    monkeypatch.delenv("FAILS")
+    (tmp_path / "t.csv").write_text("of another sweep")
+    with pytest.raises(StudyError, match="did not make"):
+        make()
+    assert (tmp_path / "t.csv.parts/part-1").exists() and (tmp_path / "t.csv").read_text() == "of another sweep"
+
+
+def test_what_mbs_refuses_is_not_submitted(tmp_path, make):
+    (tmp_path / "s.json").write_text("mbs: no scene")
+    with pytest.raises(StudyError, match="mbs: no scene"):
+        make()
+    assert not (tmp_path / "t.csv.parts").exists()
+
+
+def test_the_part_that_failed_is_named_and_not_one_that_is_seen_late(make, monkeypatch):
+    monkeypatch.setenv("FAILS", "2")
+    with pytest.raises(StudyError, match="part 2 of 2 is not done: mbs: lost; the same command goes on"):
+        make()

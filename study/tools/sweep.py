@@ -12,10 +12,11 @@ import matplotlib.pyplot as plt
 import numpy
 import pandas
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
 from scipy.stats import binned_statistic_2d
 
 from analysis.core import style
-from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.files import ROOT, StudyError, digest, write_text
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.cluster import end_jobs, profile_folder, state
@@ -80,11 +81,11 @@ def read(path, of):
         raise StudyError(f"{path}: found no lanes, allowed is a table of `mbs sweep`")
     parameters = names[:names.index("status")]
     numbers = set(table.select_dtypes("number"))
-    results = [name for name in names[names.index("status"):] if name in numbers]
+    results = [name for name in names[names.index("status"):] if name in numbers and table[name].notna().any()]
     outputs = names[names.index("constraint_violation_max") + 1:] if "constraint_violation_max" in names else []
     result = of or next((name for name in outputs if name in results), "constraint_violation_max")
     if result not in results:
-        raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
+        raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results) or 'none: no lane has a result'}")
     if wrong := [name for name in parameters if name not in numbers]:
         raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
     broken = ~numpy.isfinite(table[parameters]).all(axis=1) | table["status"].isna()
@@ -97,15 +98,19 @@ def read(path, of):
 
 def lines(axes, table, columns):
     """Each lane a line over axes of its own scale; the colour goes by the last column."""
-    low, high = table[columns].min(), table[columns].max()
+    result, low, high = columns[-1], table[columns].min(), table[columns].max()
+    known = counted(table, result)
+    low[result], high[result] = table.loc[known, result].min(), table.loc[known, result].max()
     shares = (table[columns] - low) / (high - low).where(high > low, 1)
-    shares[columns[-1]] = shares[columns[-1]].fillna(-0.12)  # a lane without a result ends below
+    shares[result] = shares[result].where(known, -0.12)  # a lane whose result does not count ends below
     places = numpy.arange(len(columns))
     for finished in (True, False):
         chosen = shares[table["finished"] == finished]
-        chosen = chosen.iloc[numpy.unique(numpy.linspace(0, len(chosen) - 1, min(LINES, len(chosen))).astype(int))]
+        if len(chosen) > LINES:  # at random: rows at one distance go with the periods of a grid
+            chosen = chosen.sample(LINES, random_state=0)
         ways = numpy.stack([numpy.broadcast_to(places, chosen.shape), chosen.to_numpy()], axis=2)
-        look = {"array": chosen[columns[-1]].to_numpy(), "cmap": plt.get_cmap("viridis")} if finished else {"color": FAILED}
+        look = ({"array": chosen[result].to_numpy(), "cmap": plt.get_cmap("viridis"), "norm": Normalize(0, 1)} if finished else
+                {"color": FAILED})
         axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look, zorder=1 if finished else 2))
     axes.set(xlim=(-0.3, len(columns) - 0.7), ylim=(-0.2, 1.12), xticks=places, yticks=[])
     axes.set_xticklabels(columns, rotation=20, ha="right")
@@ -119,10 +124,16 @@ def lines(axes, table, columns):
     axes.set_title(title + ("" if table["finished"].all() else "; red: failed"))
 
 
+def counted(table, result):
+    """Which lanes' results count: of those that finished, where there are any. One that failed has that of a part of its motion."""
+    there = table[result].notna()
+    return there & table["finished"] if (there & table["finished"]).any() else there
+
+
 def surface(axes, table, over, result):
     """Median of the result in each cell of two parameters; a cross where a lane failed."""
     bins = [edges(table[name].to_numpy()) for name in over]
-    known, failed = table[table[result].notna()], table[~table["finished"]]
+    known, failed = table[counted(table, result)], table[~table["finished"]]
     values = binned_statistic_2d(known[over[0]], known[over[1]], known[result], "median", bins).statistic
     lost = numpy.argwhere(numpy.histogram2d(failed[over[0]], failed[over[1]], bins)[0])
     axes.figure.colorbar(axes.pcolormesh(*bins, values.T, cmap="viridis"), ax=axes, label=result)
@@ -150,58 +161,80 @@ def curve(axes, table, name, result):
 
 def on_cluster(words, table, count, profile):
     """Makes the table that one process would have written. `words`: what `mbs sweep` gets besides its output; `count`: parts; `profile`: the
-    cluster's folder. What is done of parts is kept beside the table until it is there. A table that these words made stays as it is."""
+    cluster's folder. What is done of parts is kept beside the table until it is there. A table that these words made of this scene with this
+    program stays as it is."""
     if not (profile / "array").is_file():
         raise StudyError(f"--cluster: {profile} has no script array: study/cluster/README.md says what it does")
     folder = Path(f"{table}.parts").absolute()
-    script = _script(words, count, folder)
-    if Path(table).exists() and _text(folder / "part.sh") != script:
-        raise StudyError(f"{table}: found a file that this command did not make, allowed is another name; without --cluster it is drawn")
+    script, there = _script(words, count, folder), Path(table).exists()
+    if there and _text(folder / "made") != _made(script, Path(table)):
+        raise StudyError(f"{table}: found a file that this command did not make with this scene and this program, allowed is another name; "
+                         "without --cluster it is drawn")
+    if _text(folder / "part.sh") != script:
+        _mbs("sweep", *words, "--output", str(table), "--check")
     home(folder).mkdir(parents=True, exist_ok=True)
     parts = [folder / f"part-{number}" for number in range(1, count + 1)]
     with locks.only_one(folder):
         end_jobs(folder, profile)
-        if not Path(table).exists():
+        if not there:
             write_text(folder / "part.sh", script)
-            _make(table, folder, profile, parts)
-        for path in [*parts, *folder.glob("done-*"), *folder.glob("log-*")]:
+            merged = _merged(folder, profile, parts, Path(table).name)
+            write_text(folder / "made", _made(script, merged))  # before the table: a kill leaves none that is not known
+            os.replace(merged, table)
+        for path in [*parts, *(path for kind in ("done", "failed", "log") for path in folder.glob(f"{kind}-*"))]:
             path.unlink(missing_ok=True)
 
 
 def _script(words, count, folder):
     """Runs one part; a lane that fails is a row, and no failure of the part. A part that is there may be another sweep's: only
-    what `mbs` has taken as its own is done."""
-    command, beside = shlex.join([str(ROOT / program_of()), "sweep", *words, "--resume"]), shlex.quote(str(folder))
-    return (f"cd {shlex.quote(os.getcwd())}\n"
-            f'{command} --shard "$1/{count}" --output {beside}/part-"$1" || [ $? = 1 ] || exit 2\n'
+    what `mbs` has taken as its own is done. Its first line says what the table depends on besides: the program and the scene."""
+    program, beside = ROOT / program_of(), shlex.quote(str(folder))
+    inputs = [digest(path) for path in [program, *(Path(word) for word in words if os.path.isfile(word))]]
+    return (f"# {' '.join(inputs)}\n"
+            f"cd {shlex.quote(os.getcwd())}\n"
+            f"{shlex.join([str(program), 'sweep', *words, '--resume'])}"
+            f' --shard "$1/{count}" --output {beside}/part-"$1" || [ $? = 1 ] || {{ touch {beside}/failed-"$1"; exit 2; }}\n'
             f'touch {beside}/done-"$1"\n')
 
 
-def _make(table, folder, profile, parts):
-    done = [folder / f"done-{number}" for number in range(1, len(parts) + 1)]
-    for mark in done:
+def _made(script, table):
+    """Tells a table that the script's parts gave from any other."""
+    return digest(script + digest(table))
+
+
+def _merged(folder, profile, parts, name):
+    """Path of the table of all parts, which are run as far as they are not there."""
+    done, failed = ([folder / f"{kind}-{number}" for number in range(1, len(parts) + 1)] for kind in ("done", "failed"))
+    for mark in [*done, *failed]:
         mark.unlink(missing_ok=True)
     try:
         given = subprocess.run([str(profile / "array"), str(len(done)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
         if given.returncode:
             raise StudyError(f"{profile / 'array'}: {_last(given.stderr, 'failed')}")
         display = Display()
-        while (now := state(folder, profile, given.stdout.strip())) == "running":
+        while state(folder, profile, given.stdout.strip()) == "running":
             display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
             time.sleep(1)
         display.end()
     finally:
         end_jobs(folder, profile)
-    end = time.monotonic() + (LATENCY if now == "success" else 0)
-    while time.monotonic() < end and not all(mark.exists() for mark in done):
+    end = time.monotonic() + LATENCY  # what was killed leaves no mark
+    while time.monotonic() < end and not all(one.exists() or other.exists() for one, other in zip(done, failed)):
         time.sleep(1)
     for number, mark in enumerate(done, 1):
         if not mark.exists():
             raise StudyError(f"part {number} of {len(parts)} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
                              "the same command goes on where it was")
-    merged = subprocess.run([str(ROOT / program_of()), "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
-    if merged.returncode >= USAGE or merged.returncode < 0:
-        raise StudyError(_last(merged.stderr, "mbs merge-sweep does not work"))
+    merged = folder / f"merged-{name}"
+    _mbs("merge-sweep", *map(str, parts), "--output", str(merged))
+    return merged
+
+
+def _mbs(*words):
+    """StudyError with the last line of `mbs` where it refuses these words, or does not work."""
+    done = subprocess.run([str(ROOT / program_of()), *words], capture_output=True, text=True)
+    if not 0 <= done.returncode < USAGE:
+        raise StudyError(_last(done.stderr, f"mbs {words[0]} does not work"))
 
 
 def _text(path):
