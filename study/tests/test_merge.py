@@ -9,10 +9,12 @@ import pytest
 
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_json, write_json
+from analysis.core.registry import ANCHOR
 from analysis.core.timing import Ranking, Ratio
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, merge, need_alike
+from study.tools.paper import tables
 
 ONE = Ratio(1.0, 1.0, 1.0)
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
@@ -39,6 +41,21 @@ def test_contradicting_machines_leave_nobody_and_name_the_robust_one():
 def test_what_an_interval_does_not_exclude_stays_inside():
     found = agreed({"a": ONE, "b": Ratio(1.2, 1.04, 1.4)}, {"a": ONE, "b": Ratio(1.1, 1.0, 1.2)})
     assert found.common == ["a", "b"] and found.verdict == "several"
+
+
+def test_gains_are_compared_on_the_same_scenes(monkeypatch):
+    rows = pandas.DataFrame([(ANCHOR, "chain:3", 0.5), (ANCHOR, "chain:9", 0.9), (tables.SCALAR, "chain:3", 0.6), (tables.BLOCKS, "chain:3", 0.4),
+                             (tables.BLOCKS, "chain:8", 0.1)], columns=["implementation", "scene", "step_us"]).assign(scheme="penalty", status="ok")
+    monkeypatch.setattr(machine, "table", lambda folder, *_: rows if folder.name == "second" else rows.assign(step_us=1.0))
+    sets = [SimpleNamespace(folder=Path(name)) for name in ("first", "second")]
+    found = machine.beside(sets)
+    assert [*found] == [tables.BLOCKS, ANCHOR, tables.SCALAR]
+    assert found[tables.SCALAR][0] == 1 and found[tables.SCALAR][1:] == ([1.0, pytest.approx(0.6)], [1.0, pytest.approx(0.5)])
+    assert found[ANCHOR] == (2, [1.0, pytest.approx(0.45**0.5)], [1.0, pytest.approx(0.45**0.5)])
+    monkeypatch.setattr(tables, "_machine", lambda one: {})
+    monkeypatch.setattr(tables, "GAINED", (tables.SCALAR, ANCHOR, tables.BLOCKS))
+    said = tables.machines(SimpleNamespace(compared=sets))
+    assert [line.split("&")[-1].split()[0] for line in said.splitlines() if "a step with" in line] == ["0.6", "0.5", "0.4"]
 
 
 def test_what_each_set_says_and_what_they_say_alike_is_counted():

@@ -5,6 +5,7 @@ import matplotlib.pyplot as plt
 import pandas
 
 from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.registry import ANCHOR
 from analysis.core.site import template
 from analysis.core.style import save
 from study.core.options import Parser, directory
@@ -51,7 +52,7 @@ def merge(arguments):
     write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
         machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
-        gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
+        gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR,
         spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(libraries),
         claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
     for layer, count in counts.items():
