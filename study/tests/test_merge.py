@@ -89,6 +89,12 @@ def test_a_cell_is_decided_falsely_in_less_than_one_of_twenty():
     assert 0 < sum(cell.verdict == "decided" for cell in cells) < 50
 
 
+def test_who_is_far_behind_takes_nothing_from_what_is_shown_of_others():
+    far, near = {f"far/{number}": Ratio(3.0, 2.9, 3.1) for number in range(12)}, Ratio(1.2, 1.12, 1.28)
+    found = agreed({"a": ONE, "b": near} | far, {"b": ONE, "a": near} | far)
+    assert found.verdict == "differs" and found.chance("differs") == pytest.approx(0.0042, rel=0.1)
+
+
 def test_of_many_cells_those_stay_that_are_decided_by_far():
     far, near = {"a": ONE, "b": Ratio(2.0, 1.9, 2.1)}, {"a": ONE, "b": Ratio(1.11, 1.07, 1.15)}
     cells = [agreed(far, far, scene="far"), *(agreed(near, near, scene=f"near:{number}") for number in range(5)),

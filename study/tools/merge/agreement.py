@@ -110,7 +110,7 @@ def behind(ratio, variance):
 
 class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,))):
     """`machines`: for each set its Ranking; `day`: a variance that days add to a ratio's logarithm. A contender is inside on a machine if it is not
-    shown to be over 5 % behind the fastest there, corrected for the number of ratios that the cell has on all machines [Bonferroni]."""
+    shown to be over 5 % behind the fastest there, where all ratios that the cell has on all machines are asked at once [Holm]."""
     winners = property(lambda self: [one.winner for one in self.machines])
     # Of each machine, those inside.
     sets = property(lambda self: [[name for name, chance in one.items() if chance > 1 - CONFIDENCE] for one in self.chances])
@@ -123,10 +123,13 @@ class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,)
 
     @cached_property
     def chances(self):
-        """Of each machine {contender: `behind`, corrected}. Twice: a cell is decided falsely where either of two that are inside is found outside."""
-        tests = 2 * sum(len(one.ratios) - 1 for one in self.machines)
-        return [{name: 1.0 if name == ranking.winner else tests * behind(one, self.day) for name, one in ranking.ratios.items()}
-                for ranking in self.machines]
+        """Of each machine {contender: `behind`, corrected}. Twice, as nobody knows before who leads."""
+        found, least = [dict.fromkeys(one.ratios, 1.0) for one in self.machines], 0.0
+        asked = sorted((behind(one, self.day), place, name) for place, ranking in enumerate(self.machines)
+                       for name, one in ranking.ratios.items() if name != ranking.winner)
+        for left, (chance, place, name) in zip(range(len(asked), 0, -1), asked):
+            found[place][name] = least = max(least, 2 * left * chance)
+        return found
 
     @cached_property
     def everywhere(self):
