@@ -109,8 +109,9 @@ def apart(rows, column="step_us"):
     return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
-class Ratio(namedtuple("Ratio", "value low high chance", defaults=(math.nan,))):
-    """With its interval. `chance`: to find it so far from 1, or farther, where it is 1 (Student's, two-sided: nobody knows before who leads)."""
+class Ratio(namedtuple("Ratio", "value low high chance freedom", defaults=(math.nan, math.nan))):
+    """With its interval. `chance`: to find it so far from 1, or farther, where it is 1 (Student's, two-sided: nobody knows before who leads).
+    `freedom`: degrees of it."""
     def columns(self, name="ratio", ends=""):
         return {name: self.value, f"{ends}low": self.low, f"{ends}high": self.high}
 
@@ -152,7 +153,7 @@ def ratio(rows, first, second):
         return Ratio(math.exp(logs[0]), 0.0, math.inf)
     middle, half, error, freedom = student(logs, *rows.beyond)
     chance = 2 * float(special.stdtr(freedom, -abs(middle) / error)) if error else float(middle == 0)
-    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance, freedom)
 
 
 def by_layout(rows, logs):
@@ -195,8 +196,8 @@ def _median(first, second):
     return float(ordered[(count - 1) // 2] + ordered[count // 2]) / 2
 
 
-class Ranking(namedtuple("Ranking", "winner ratios")):
-    """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first."""
+class Ranking(namedtuple("Ranking", "winner ratios untimed", defaults=((),))):
+    """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first. `untimed`: of whom it is not known how long they take."""
     second = property(lambda self: next((name for name in self.ratios if name != self.winner), None))
     margin = property(lambda self: self.ratios.get(self.second, NONE))
     # Whether the winner is shown to be faster than each other one.

@@ -102,7 +102,7 @@ def test_controls_have_rows_and_their_twins_no_place():
 
 
 @pytest.mark.parametrize("path, said", [
-    ("analysis/map", "by Holm"), ("analysis/families", "(Holm)"), ("analysis/accuracy", "uncorrected for their number"), ("study/tools/merge", "uncorrected for their number")])
+    ("analysis/map", "by Holm"), ("analysis/families", "(Holm)"), ("analysis/accuracy", "uncorrected for their number"), ("study/tools/merge", "by Holm")])
 def test_pages_say_whether_their_intervals_are_corrected_for_their_number(path, said):
     assert said in (ROOT / path / "page.html.j2").read_text(encoding="utf-8")
 

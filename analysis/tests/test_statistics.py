@@ -34,7 +34,7 @@ def test_median_never_hides_a_nan():
 def test_what_disturbs_both_in_a_process_cancels():
     slow = {1: (1.1, 3.3), 2: (2.2, 1.1)}
     found = ratio(pandas.DataFrame(rows("a", slow) + rows("b", {1: (1.0, 3.0), 2: (2.0, 1.0)})), "a", "b")
-    assert (found.value, found.low, found.high) == pytest.approx((1.1, 1.1, 1.1))
+    assert (found.value, found.low, found.high) == pytest.approx((1.1, 1.1, 1.1)) and found.freedom == 1
 
 
 def test_one_process_gives_no_interval_and_none_gives_no_ratio():

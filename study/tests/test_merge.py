@@ -1,4 +1,5 @@
 # study/merge: what holds on several machines.
+import math
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -6,20 +7,36 @@ from types import SimpleNamespace
 import numpy
 import pandas
 import pytest
+from scipy import special
 
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_json, write_json
+from analysis.core.registry import ANCHOR
 from analysis.core.timing import Ranking, Ratio
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, merge, need_alike
+from study.tools.paper import tables
 
 ONE = Ratio(1.0, 1.0, 1.0)
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
 
 
-def agreed(*machines):
-    return Agreement(Question("map", "four-bar:4", "penalty", "libraries", 10.0), tuple(Ranking(next(iter(one)), one) for one in machines))
+FREEDOM = 7
+QUANTILE = special.stdtrit(FREEDOM, 0.975)
+
+
+def agreed(*machines, untimed=(), scene="four-bar:4"):
+    """`untimed`: on the last machine."""
+    rankings = [Ranking(next(iter(one)), {name: ratio._replace(freedom=FREEDOM) for name, ratio in one.items()}) for one in machines]
+    return Agreement(Question("map", scene, "penalty", "libraries", 10.0), (*rankings[:-1], rankings[-1]._replace(untimed=untimed)))
+
+
+def measured(random, log, error):
+    """A Ratio as FREEDOM + 1 layouts give it."""
+    logs = log + error * random.standard_normal(FREEDOM + 1)
+    half = QUANTILE * logs.std(ddof=1) / len(logs) ** 0.5
+    return Ratio(*numpy.exp(logs.mean() + numpy.array([0.0, -half, half])))
 
 
 def test_who_is_best_on_one_machine_and_near_it_on_the_other_holds_on_both():
@@ -39,6 +56,71 @@ def test_contradicting_machines_leave_nobody_and_name_the_robust_one():
 def test_what_an_interval_does_not_exclude_stays_inside():
     found = agreed({"a": ONE, "b": Ratio(1.2, 1.04, 1.4)}, {"a": ONE, "b": Ratio(1.1, 1.0, 1.2)})
     assert found.common == ["a", "b"] and found.verdict == "several"
+
+
+def test_who_lacks_a_time_is_not_shown_to_be_behind():
+    sure, near, far = {"a": ONE}, {"a": ONE, "b": Ratio(1.02, 0.99, 1.05)}, {"a": ONE, "b": Ratio(1.5, 1.4, 1.6)}
+    assert agreed(near, sure).verdict == "decided"  # it does not serve the scene there, or was far slower
+    found = agreed(near, sure, untimed=("b",))
+    assert (found.verdict, found.common, found.chance("decided")) == ("open", ["a"], 1.0)
+    assert agreed(far, sure, untimed=("b",)).verdict == "decided" and agreed(near, near, sure, untimed=("c",)).verdict == "decided"
+    alone = agreed({"b": ONE, "a": Ratio(1.5, 1.4, 1.6)}, sure, untimed=("b",))
+    assert alone.verdict == "open" and agreement.shares([alone, found]) == {"all": 2, "same": 1, "common": 0, "differ": 0, "open": 1}
+
+
+def test_a_ranking_knows_who_lacks_a_time_and_how_many_layouts_tell_a_ratio(tmp_path, monkeypatch):
+    rows = pandas.DataFrame([("a", "ok", 8, 1.0, math.nan), ("b", "ok", 3, 1.1, 1.0), ("c", "dropped"), ("d", "slower"), ("e", "ok", 2),
+                             ("f", "crashed"), ("own", "dropped")], columns=["implementation", "status", "processes", "to_rival", "to_rival_low"])
+    rows = rows.assign(to_rival_high=1.2 * rows.to_rival_low, scene="chain:3", scheme="penalty", variables=6.0)
+    (tmp_path / "families").mkdir()
+    (tmp_path / "families" / "scenes.csv").touch()
+    monkeypatch.setattr(schema, "read_table", lambda *_: rows)
+    [ranking] = agreement.questions(SimpleNamespace(folder=tmp_path, registry=SimpleNamespace(libraries=[*"abcdef"]))).values()
+    assert ranking.untimed == ("c", "e", "f") and [*ranking.ratios] == ["a", "b"] and ranking.ratios["b"].freedom == 2
+    both = agreement._of_all(ranking, pandas.DataFrame({"implementation": ["g", "g"], "status": ["dropped", "slower"]}))
+    assert both.untimed == ()
+
+
+def test_a_cell_is_decided_falsely_in_less_than_one_of_twenty():
+    """Two are among the best on all of five machines, the second just so."""
+    random = numpy.random.default_rng(5)
+    cells = [agreed(*({"a": ONE, "b": measured(random, numpy.log(1.05), 0.02)} for _ in range(5))) for _ in range(1000)]
+    assert sum(any(one.ratios["b"].low > 1.05 for one in cell.machines) for cell in cells) > 100
+    assert 0 < sum(cell.verdict == "decided" for cell in cells) < 50
+
+
+def test_who_is_far_behind_takes_nothing_from_what_is_shown_of_others():
+    far, near = {f"far/{number}": Ratio(3.0, 2.9, 3.1) for number in range(12)}, Ratio(1.2, 1.12, 1.28)
+    found = agreed({"a": ONE, "b": near} | far, {"b": ONE, "a": near} | far)
+    assert found.verdict == "differs" and found.chance("differs") == pytest.approx(0.0042, rel=0.1)
+
+
+def test_of_many_cells_those_stay_that_are_decided_by_far():
+    far, near = {"a": ONE, "b": Ratio(2.0, 1.9, 2.1)}, {"a": ONE, "b": Ratio(1.11, 1.07, 1.15)}
+    cells = [agreed(far, far, scene="far"), *(agreed(near, near, scene=f"near:{number}") for number in range(5)),
+             agreed(far, {"b": ONE, "a": far["b"]}, scene="differs")]
+    assert [one.verdict for one in cells] == ["decided"] * 6 + ["differs"]
+    assert {one.scene for one in agreement.sure(cells)} == {"far", "differs"}
+
+
+def test_what_days_add_is_in_a_verdict():
+    found = agreed(*2 * [{"a": ONE, "b": Ratio(1.15, 1.13, 1.17)}])
+    assert found.verdict == "decided" and found._replace(day=0.05**2).verdict == "several"
+
+
+def test_gains_are_compared_on_the_same_scenes(monkeypatch):
+    rows = pandas.DataFrame([(ANCHOR, "chain:3", 0.5), (ANCHOR, "chain:9", 0.9), (tables.SCALAR, "chain:3", 0.6), (tables.BLOCKS, "chain:3", 0.4),
+                             (tables.BLOCKS, "chain:8", 0.1)], columns=["implementation", "scene", "step_us"]).assign(scheme="penalty", status="ok")
+    monkeypatch.setattr(machine, "table", lambda folder, *_: rows if folder.name == "second" else rows.assign(step_us=1.0))
+    sets = [SimpleNamespace(folder=Path(name)) for name in ("first", "second")]
+    found = machine.beside(sets)
+    assert [*found] == [tables.BLOCKS, ANCHOR, tables.SCALAR]
+    assert found[tables.SCALAR][0] == 1 and found[tables.SCALAR][1:] == ([1.0, pytest.approx(0.6)], [1.0, pytest.approx(0.5)])
+    assert found[ANCHOR] == (2, [1.0, pytest.approx(0.45**0.5)], [1.0, pytest.approx(0.45**0.5)])
+    monkeypatch.setattr(tables, "_machine", lambda one: {})
+    monkeypatch.setattr(tables, "GAINED", (tables.SCALAR, ANCHOR, tables.BLOCKS))
+    said = tables.machines(SimpleNamespace(compared=sets))
+    assert [line.split("&")[-1].split()[0] for line in said.splitlines() if "a step with" in line] == ["0.6", "0.5", "0.4"]
 
 
 def test_what_each_set_says_and_what_they_say_alike_is_counted():
@@ -73,7 +155,7 @@ def test_what_days_and_machines_add_to_a_ratio_is_told():
 
 def test_where_neither_days_nor_machines_add_anything_next_to_nothing_is_told():
     random, error = numpy.random.default_rng(4), 0.03
-    half = agreement.QUANTILE * error
+    half = QUANTILE * error
     cells = [agreed(*({"a": ONE, "b": Ratio(*numpy.exp([log, log - half, log + half]))}
                       for log in 1.0 + error * random.standard_normal(4))) for _ in range(300)]
     found = agreement.components(cells, ["m1", "m1", "m2", "m2"])
@@ -178,7 +260,9 @@ def test_two_sets_become_a_page_and_a_table(days, tmp_path, capsys):
     merge([*days, "--fresh", "3"])
     said = capsys.readouterr().out
     assert "0 differ by machine" in said and "alike (100 %)" in said and "fresh set's winner lies in" in said
-    assert "2026-01-02" in (tmp_path / "merged" / "index.html").read_text()
+    page = (tmp_path / "merged" / "index.html").read_text()
+    assert "2026-01-02" in page and "What sets of one kind of machine" in page and "days on one machine" not in said + page
+    assert "with csc_ldl/uplooking, " in page and " (1)" in page
     assert "2026-01-02" in (tmp_path / "merged" / "mechanisms.svg").read_text()
     edit(tmp_path / "2" / "set.json", context=read_json(tmp_path / "2" / "set.json")["context"] | {"commit": "0" * 40})
     with pytest.raises(StudyError, match="of another build"):

@@ -2,24 +2,26 @@
 import math
 import re
 from collections import namedtuple
+from functools import cached_property
 
 import numpy
 import pandas
-from scipy import stats
+from scipy import special
 
 from analysis.core import schema
 from analysis.core.gather import gather
-from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio
+from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio, holm
 from analysis.core.view import View, contexts_in
 from analysis.map.results import Results
 from study.core import executor
 from study.core.timing import LAYOUTS
 from study.tools.merge import machine
 
-QUANTILE = float(stats.t.ppf((1 + CONFIDENCE) / 2, LAYOUTS - 1))  # of intervals over layouts
-SOURCES = {"day": "days on one machine", "processor": "machines"}  # of a ratio's spread between sets
+SOURCES = {"day": "sets of one kind of machine", "processor": "kinds of machines"}  # of a ratio's spread between sets
 LAYERS = {"libraries": "libraries", "all": "all, own code included"}
 ALIKE = ("commit", "compiler", "flags", "build_type", "libraries", "blas", "blas_loaded")  # of sets that may be compared
+UNTIMED = ("dropped", "timeout", "crashed", "out-of-memory")  # say nothing of how long someone takes, where no other status does
+LEFT = {"decided": 1, "differs": 0}  # contenders that a verdict leaves
 SYSTEM = re.compile(r"[\w-]+-linux-gnu")  # in paths: a library of another architecture is the same one
 
 
@@ -65,7 +67,8 @@ def _map(studyset):
     for layer in LAYERS:
         for scene, rows in results.timing.groupby("scene"):
             if ranking := results.rank(scene, results.layer(layer)):
-                yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking
+                mine = rows[rows.implementation.isin(results.layer(layer))]
+                yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), _of_all(ranking, mine)
 
 
 def _families(studyset):
@@ -73,32 +76,76 @@ def _families(studyset):
     if not (studyset.folder / "families" / "scenes.csv").exists():
         return
     rows = schema.read_table(studyset.folder, "families", "scenes")
-    rows = rows[(rows.status == "ok") & rows.implementation.isin(studyset.registry.libraries) & rows.to_rival.notna()]
+    rows = rows[rows.implementation.isin(studyset.registry.libraries)]
     for (scene, form), group in rows.groupby(["scene", "scheme"]):
-        if group.to_rival_low.notna().any():
-            ratios = {row.implementation: Ratio(row.to_rival, row.to_rival_low, row.to_rival_high) if row.to_rival != 1 else Ratio(1.0, 1.0, 1.0)
-                      for row in group.sort_values("to_rival").itertuples()}
-            yield Question("families", scene, form, "libraries", group.variables.iloc[0]), Ranking(next(iter(ratios)), ratios)
+        timed = group[(group.status == "ok") & group.to_rival.notna()].sort_values("to_rival")
+        if timed.to_rival_low.notna().any():
+            layouts = timed.processes.clip(upper=min(timed.processes.iloc[0], LAYOUTS))  # of whose processes a ratio to the first is
+            ratios = {row.implementation: Ratio(1.0, 1.0, 1.0) if row.to_rival == 1 else
+                      Ratio(row.to_rival, row.to_rival_low, row.to_rival_high, freedom=of - 1) for row, of in zip(timed.itertuples(), layouts)}
+            yield Question("families", scene, form, "libraries", group.variables.iloc[0]), _of_all(Ranking(next(iter(ratios)), ratios), group)
 
 
-class Agreement(namedtuple("Agreement", "question machines")):
-    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be over 5 % behind the fastest there."""
+def _of_all(ranking, rows):
+    """A Ranking with who has rows of its scene, and was neither timed beside others nor shown to be slow or not to serve it."""
+    told = rows.implementation[~rows.status.isin([*UNTIMED, "ok"])]
+    return ranking._replace(untimed=tuple(sorted({*rows.implementation} - {*told, *ranking.ratios})))
+
+
+def error(ratio):
+    """Standard error of a ratio's logarithm."""
+    return math.log(ratio.high / ratio.low) / 2 / float(special.stdtrit(ratio.freedom, (1 + CONFIDENCE) / 2)) if ratio.high > ratio.low else 0.0
+
+
+def behind(ratio, variance):
+    """The chance to find it so far over EQUIVALENT, or farther, where it is not over it (Student's, one-sided). `variance`: beyond its interval,
+    of its logarithm; that the intervals' degrees of freedom stay makes the chance larger."""
+    if not (0 < ratio.low <= ratio.high < math.inf and ratio.value > EQUIVALENT):
+        return 1.0
+    own = math.hypot(error(ratio), math.sqrt(variance)) or 1e-9
+    return float(special.stdtr(ratio.freedom, math.log(EQUIVALENT / ratio.value) / own))
+
+
+class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,))):
+    """`machines`: for each set its Ranking; `day`: a variance that days add to a ratio's logarithm. A contender is inside on a machine if it is not
+    shown to be over 5 % behind the fastest there, where all ratios that the cell has on all machines are asked at once [Holm]."""
     winners = property(lambda self: [one.winner for one in self.machines])
     # Of each machine, those inside.
-    sets = property(lambda self: [[name for name, one in ranking.ratios.items() if one.value == 1 or not one.low > EQUIVALENT]
-                                  for ranking in self.machines])
+    sets = property(lambda self: [[name for name, chance in one.items() if chance > 1 - CONFIDENCE] for one in self.chances])
+    # Those inside on all machines: the equivalence set that holds on all.
+    common = property(lambda self: [name for name in self.sets[0] if all(name in one for one in self.sets)])
     # Whether each winner is as fast as the winner on every other machine.
     alike = property(lambda self: all(mine.winner in its.equivalent for mine in self.machines for its in self.machines))
     # Whom to take where nobody knows the machine: the least worst loss, of those inside on all, else of all.
     robust = property(lambda self: next((name for name in self.worst if name in self.common), next(iter(self.worst), "")))
-    # "decided" where the machines leave one alone.
-    verdict = property(lambda self: {0: "differs", 1: "decided"}.get(len(self.common), "several"))
+
+    @cached_property
+    def chances(self):
+        """Of each machine {contender: `behind`, corrected}. Twice, as nobody knows before who leads."""
+        found, least = [dict.fromkeys(one.ratios, 1.0) for one in self.machines], 0.0
+        asked = sorted((behind(one, self.day), place, name) for place, ranking in enumerate(self.machines)
+                       for name, one in ranking.ratios.items() if name != ranking.winner)
+        for left, (chance, place, name) in zip(range(len(asked), 0, -1), asked):
+            found[place][name] = least = max(least, 2 * left * chance)
+        return found
+
+    @cached_property
+    def everywhere(self):
+        """{contender timed on a machine: the least of its `chances`}. Without a time it is outside, unless nothing is known of it there."""
+        return {name: min(chances.get(name, float(name in ranking.untimed)) for chances, ranking in zip(self.chances, self.machines))
+                for name in dict.fromkeys(name for one in self.chances for name in one)}
 
     @property
-    def common(self):
-        """Those inside on all machines: the equivalence set that holds on all."""
-        first, *others = self.sets
-        return [name for name in first if all(name in one for one in others)]
+    def verdict(self):
+        """"decided" where the machines leave one alone; "open" where another one may be left that lacks a time on one of them."""
+        if len(self.common) > 1:
+            return "several"
+        left = {name for name, chance in self.everywhere.items() if chance > 1 - CONFIDENCE}
+        return "open" if left - {*self.common} else "decided" if left else "differs"
+
+    def chance(self, verdict):
+        """To find so few left, or fewer, where more are."""
+        return sorted([0.0, *self.everywhere.values()])[-1 - LEFT[verdict]]
 
     @property
     def worst(self):
@@ -115,15 +162,22 @@ def agreements(sets, asked=questions):
     return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(set().union(*found)) - len(shared)
 
 
+def sure(agreed):
+    """The questions whose "decided" or "differs" stays where all cells of a layer are asked at once [Holm]."""
+    found = [{"question": one.question, "chance": one.chance(verdict), "decided": one.verdict == verdict, "asked": (verdict, one.question.layer)}
+             for verdict in LEFT for one in agreed]
+    return {row["question"] for rows in gather((row["asked"], row) for row in found).values() for row in holm(rows) if row.get("holm")}
+
+
 def components(agreed, machines):
-    """{"day", "processor": (standard deviation of a ratio in %, cells that tell it)}: what sets of one machine, and machines, add to
-    what a set's intervals say of the ratio of two contenders. `machines`: of each set which it is of."""
+    """{"day", "processor": (standard deviation of a ratio in %, cells that tell it)}: what sets of one kind of machine, and kinds, add to
+    what a set's intervals say of the ratio of two contenders. `machines`: of each set its fingerprint, which hosts of one kind share."""
     found = {"day": [], "processor": []}
     for one in agreed:
         both = [[ranking.ratios.get(name, NONE) for name in (one.winners[0], one.machines[0].second)] for ranking in one.machines]
         if not all(0 < ratio.low <= ratio.high < math.inf for pair in both for ratio in pair):
             continue  # not told by all
-        own = numpy.mean([sum((math.log(ratio.high / ratio.low) / 2 / QUANTILE) ** 2 for ratio in pair) for pair in both])
+        own = numpy.mean([sum(error(ratio) ** 2 for ratio in pair) for pair in both])
         logs = pandas.Series([math.log(second.value / first.value) for first, second in both]).groupby(list(machines))
         day = logs.var().mean() if logs.size().max() > 1 else own  # which no machine with one set tells
         found["day"] += [day - own] if logs.size().max() > 1 else []
@@ -141,10 +195,11 @@ def mechanisms(sets, agreed=None):
 
 
 def shares(agreed):
-    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all, none."""
+    """{"all", "same", "common", "differ", "open"}: on how many all machines have the same winner, another one within the margin on all, none, or
+    perhaps one that lacks a time."""
     same = sum(len(set(one.winners)) == 1 for one in agreed)
-    differ = sum(one.verdict == "differs" for one in agreed)
-    return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ, "differ": differ}
+    differ, open_ = (sum(one.verdict == verdict and not one.common for one in agreed) for verdict in ("differs", "open"))
+    return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ - open_, "differ": differ, "open": open_}
 
 
 def held(agreed, fresh):

@@ -6,6 +6,7 @@ from scipy.stats import gmean
 from analysis.core import records, schema
 from analysis.core.controls import judged
 from analysis.core.files import StudyError, read_object
+from analysis.core.registry import ANCHOR
 from analysis.families import rule
 from analysis.map import carry
 from analysis.map.results import with_samples
@@ -57,15 +58,28 @@ def no_evidence(studyset):
     return studyset.facts.get("no_evidence") or next(iter(failed), "")
 
 
-def gains(sets, together=()):
-    """{contender: [of each machine the geometric mean of a step's time ÷ that on the first]}, over the families' scenes, in the penalty form: its
-    own, or those where all of `together` were timed."""
+def steps(sets, together=()):
+    """Of each contender and scene of the families, in the penalty form, a step's time on each machine ÷ that on the first, where all timed it; of
+    `together`: in scenes where all of these were."""
     rows = [table(one.folder, "families", "scenes").loc[lambda rows: (rows.status == "ok") & (rows.scheme == "penalty")] for one in sets]
     times = pandas.concat([one.set_index(["implementation", "scene"]).step_us for one in rows], axis=1, join="inner", keys=range(len(sets)))
     for name in together:
         times = times[times.index.isin(times.index[times.index.get_level_values(0) == name].get_level_values(1), level=1)]
-    found = times.div(times[0], axis=0).groupby(level=0).agg(gmean).sort_values(len(sets) - 1)
-    return {name: [*one] for name, one in zip(found.index, found.to_numpy())}
+    return times.div(times[0], axis=0)
+
+
+def gains(sets, together=()):
+    """{contender: [of each machine the geometric mean of `steps`]}. Means of two are over the same scenes only if both are in `together`."""
+    return {name: [*gmean(one)] for name, one in steps(sets, together).groupby(level=0)}
+
+
+def beside(sets):
+    """{contender: (scenes that it shares with the ANCHOR, [its gain on each machine], [the ANCHOR's there])}, who gains most beside it first."""
+    found, groups = {}, {name: one.droplevel(0) for name, one in steps(sets).groupby(level=0)}
+    for name, one in groups.items():
+        if shared := [scene for scene in one.index if ANCHOR in groups and scene in groups[ANCHOR].index]:
+            found[name] = (len(shared), [*gmean(one.loc[shared])], [*gmean(groups[ANCHOR].loc[shared])])
+    return dict(sorted(found.items(), key=lambda one: one[1][1][-1] / one[1][2][-1]))
 
 
 def claims(sets):

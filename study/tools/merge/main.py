@@ -7,13 +7,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.registry import ANCHOR
 from analysis.core.site import template
 from analysis.core.style import Look, number_axis, save
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 from study.tools.merge import agreement, machine
 
-ORDER = {"differs": 0, "several": 1, "decided": 2}  # of rows: what a reader looks for comes first
+ORDER = {"differs": 0, "open": 1, "several": 2, "decided": 3}  # of rows: what a reader looks for comes first
 
 
 def merge(arguments):
@@ -42,9 +43,12 @@ def merge(arguments):
         raise StudyError("the sets have no question in common: each needs the map or the families")
     machines = labels(sets)
     spread = agreement.components(agreed, [one.facts["context"]["machine"] for one in sets])
-    table = pandas.DataFrame(row(one, machines) for one in agreed)
-    counts = {layer: {verdict: int(((table.layer == layer) & (table.verdict == verdict)).sum()) for verdict in ("decided", "several", "differs")}
-              for layer in agreement.LAYERS if (table.layer == layer).any()}
+    if "day" in spread:
+        agreed = [one._replace(day=(spread["day"][0] / 100) ** 2) for one in agreed]
+    sure = agreement.sure(agreed)
+    table = pandas.DataFrame(row(one, machines) | {"sure": one.question in sure} for one in agreed)
+    counts = {layer: {verdict: (int((rows.verdict == verdict).sum()), int(rows.sure[rows.verdict == verdict].sum())) for verdict in ORDER}
+              for layer, rows in table.groupby("layer", sort=False)}
     found = agreement.held(agreed, fresh) if fresh else {}
     options.to.mkdir(parents=True, exist_ok=True)
     write_text(options.to / "agreement.csv", table.to_csv(index=False))
@@ -53,12 +57,13 @@ def merge(arguments):
     write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
         machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
-        gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
+        gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR, day="day" in spread,
         spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(libraries),
         claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
     for layer, count in counts.items():
-        print(f"{agreement.LAYERS[layer]}: {sum(count.values())} common cells, {count['decided']} with one contender among the best everywhere, "
-              f"{count['several']} with several, {count['differs']} differ by machine")
+        (differ, sure_differ), (open_, _), (several, _), (decided, sure_decided) = (count[verdict] for verdict in ORDER)
+        print(f"{agreement.LAYERS[layer]}: {differ + open_ + several + decided} common cells, {decided} with one contender among the best everywhere "
+              f"({sure_decided} by Holm), {several} with several, {differ} differ by machine ({sure_differ} by Holm), {open_} open")
         print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
     for source, (percent, cells) in spread.items():
         print(f"{agreement.SOURCES[source]} alone make {percent:.2f} % of a ratio (standard deviation, {cells} cells)")

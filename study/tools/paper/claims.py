@@ -95,7 +95,7 @@ def _compared(known):
 
 def _machines(known):
     count = agreement.shares(agreement.mechanisms(known.compared, known.agreed))
-    kept = count["all"] - count["differ"]
+    kept = count["same"] + count["common"]
     return (10 * kept >= 9 * count["all"] if count["all"] else None), f"nine of ten; here {kept} of {count['all']}" if known.compared else ""
 
 

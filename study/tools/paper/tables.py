@@ -106,7 +106,7 @@ def claims(known):
 def machines(known):
     """What was measured on each machine that is compared, a column each."""
     sets = known.compared or [known]
-    found, gained = [_machine(one) for one in sets], machine.gains(sets)
+    found, gained = [_machine(one) for one in sets], machine.gains(sets, GAINED)  # on scenes in common, or means would not be comparable
     rows = [(what, *(mine[what] for mine in found)) for what in found[0]]
     rows += [(f"a step with {name}, times that on {sets[0].folder.name}", *map(number, gained[name]))
              for name in GAINED if name in gained and known.compared]
