@@ -195,11 +195,11 @@ def mechanisms(sets, agreed=None):
 
 
 def shares(agreed):
-    """{"all", "same", "common", "differ", "open"}: on how many all machines have the same winner, another one within the margin on all, none, or
-    perhaps one that lacks a time."""
+    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all, none. Of the rest
+    nobody knows, as someone lacks a time."""
     same = sum(len(set(one.winners)) == 1 for one in agreed)
-    differ, open_ = (sum(one.verdict == verdict and not one.common for one in agreed) for verdict in ("differs", "open"))
-    return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ - open_, "differ": differ, "open": open_}
+    return {"all": len(agreed), "same": same, "common": sum(len(one.common) > 0 for one in agreed) - same,
+            "differ": sum(one.verdict == "differs" for one in agreed)}
 
 
 def held(agreed, fresh):
