@@ -34,6 +34,12 @@ SweepBlocks::SweepBlocks(const SweepOptions& options, const SweepGrid& grid, con
 
 long SweepBlocks::end_of(long block) const { return std::min((block + 1) * size_, grid_.lanes()); }
 
+long SweepBlocks::lanes(const std::vector<long>& blocks) const {
+  long count = 0;
+  for (const long block : blocks) count += end_of(block) - block * size_;
+  return count;
+}
+
 /// Throws NotAssembled, and UsageError with the lane's values for what makes no scene.
 Lane SweepBlocks::prepare(long index) const {
   try {

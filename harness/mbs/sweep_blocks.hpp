@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mbs/sweep_options.hpp"
 #include "mbs/sweep_rows.hpp"
@@ -20,6 +21,8 @@ class SweepBlocks {
 
   [[nodiscard]] const SweepRows& rows() const { return rows_; }
   [[nodiscard]] long count() const { return (grid_.lanes() + size_ - 1) / size_; }
+  /// Of all these blocks.
+  [[nodiscard]] long lanes(const std::vector<long>& blocks) const;
   /// Throws UsageError of the first lane that makes no scene.
   void check(long block) const;
   /// A line of outcomes, then the rows.

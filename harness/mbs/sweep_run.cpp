@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <vector>
@@ -87,8 +88,9 @@ void require_no_other(const std::string& path) {
                   printable(path, kLongestPath)));
 }
 
-/// To go on with: what was done if it is of this sweep, or a new one.
-Journal open_journal(const std::string& output, const nlohmann::json& head) {
+/// To go on with: what was done if it is of this sweep, or a new one. `kept`: where.
+Journal open_journal(const std::string& output, const std::string& kept,
+                     const nlohmann::json& head) {
   if (!is_file(output)) {  // a pipe, a device: kept where nobody finds it
     std::string path = (fs::temp_directory_path() / "mbs-sweep-XXXXXX").string();
     const int file = ::mkstemp(path.data());
@@ -97,7 +99,7 @@ Journal open_journal(const std::string& output, const nlohmann::json& head) {
     fs::remove(path);
     return journal;
   }
-  Journal journal(output + ".journal", head);  // nobody else writes this table
+  Journal journal(kept, head);  // nobody else writes this table
   require_same_sweep(journal, head);
   return journal;
 }
@@ -128,6 +130,14 @@ void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& bloc
   for (const long block : mine) {
     if (!journal.has(block)) open.push_back(block);
   }
+  if (journal.damage() && !open.empty()) {
+    fmt::print(
+        stderr,
+        "mbs: note: {}: damaged or changed at byte {}: {} of {} blocks are there, the others "
+        "are run\n",
+        printable(journal.path(), kLongestPath), *journal.damage(), mine.size() - open.size(),
+        mine.size());
+  }
   Progress progress(static_cast<double>(mine.size()), "blocks of lanes");
   for_blocks(
       jobs, open, [&](long block) { return blocks.run(block); },
@@ -148,6 +158,15 @@ int sweep(const SweepOptions& options) {
   // What is wrong with the options is not said of a lane.
   const StepSettings settings = resolve(options, grid.base()).step;
   const SweepBlocks blocks(options, grid, *variant.variant);
+  std::vector<long> mine;
+  for (long block = shard.index; block < blocks.count(); block += shard.count)
+    mine.push_back(block);
+  if (options.check) {
+    require_lanes(options.jobs, mine, blocks);
+    const long lanes = blocks.lanes(mine);
+    fmt::print("{} lane{}: no value is refused\n", lanes, lanes == 1 ? "" : "s");
+    return 0;
+  }
   const nlohmann::json head = head_of(options, grid, variant.name, blocks, shard);
   const bool is_part = !options.shard.empty();
   if (is_part && !is_file(options.output)) {
@@ -155,18 +174,22 @@ int sweep(const SweepOptions& options) {
         "--output: found a device or a pipe, allowed with --shard is a file, for mbs merge-sweep");
   }
   std::error_code ignored;
-  if (is_part && fs::exists(options.output, ignored)) {
+  const bool is_made = is_part && fs::exists(options.output, ignored);
+  if (is_made) {
     if (!options.resume) {
       throw UsageError(
           fmt::format("{}: found a file, allowed with --shard is a new one, or --resume",
                       printable(options.output, kLongestPath)));
     }
-    const Journal done(options.output);
-    require_same_sweep(done, head);
-    return finish_part(done);
+    if (fs::file_size(options.output, ignored) > 0) {
+      const Journal done(options.output);
+      require_same_sweep(done, head);
+      if (has_all_blocks(done)) return finish_part(done);
+    }
   }
   static_cast<void>(AtomicFile(options.output));  // says at once what cannot be written
-  const std::string kept = options.output + ".journal";
+  // A part that was cut or damaged since is mended where it is.
+  const std::string kept = is_made ? options.output : options.output + ".journal";
   if (!options.resume) require_no_other(kept);
   if (options.resume && !is_part && is_file(options.output) &&
       fs::exists(options.output, ignored) && !fs::exists(kept, ignored)) {
@@ -176,15 +199,12 @@ int sweep(const SweepOptions& options) {
                     printable(options.output, kLongestPath)));
   }
   print_warnings(grid.base().name, options.step.warnings(grid.base().model, settings));
-  std::vector<long> mine;
-  for (long block = shard.index; block < blocks.count(); block += shard.count)
-    mine.push_back(block);
   const bool is_begun = fs::exists(kept, ignored) && fs::file_size(kept, ignored) > 0;
   if (!is_begun) require_lanes(options.jobs, mine, blocks);  // else it was done
-  Journal journal = open_journal(options.output, head);
+  Journal journal = open_journal(options.output, kept, head);
   run_blocks(options.jobs, mine, blocks, journal);
   if (is_part) {
-    fs::rename(journal.path(), options.output);
+    if (!is_made) fs::rename(journal.path(), options.output);
     return finish_part(journal);
   }
   const int status = write_table({&journal}, options.output);
