@@ -121,6 +121,17 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(files(), 3U);
 }
 
+TEST_F(SweepParts, AJournalWithoutABlockIsNothingToGoOnWith) {
+  sweep(kLanes, "whole.csv");
+  { const Journal begun(at("t.csv.journal"), {{"sweep", "ended while it looked at its lanes"}}); }
+  EXPECT_EQ(sweep(kLanes, "t.csv").status, 1);
+  EXPECT_EQ(text("t.csv"), text("whole.csv"));
+  const auto refused = sweep("four-bar:1 --jobs 2 --vary rods/A0-B0/mass=1:-1:20", "bad.csv");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.errors.find("lane 11 of 20"), std::string::npos) << refused.errors;
+  EXPECT_EQ(files(), 2U);  // nothing of the last
+}
+
 TEST_F(SweepParts, AFinishedTableIsNotMadeAgainByResume) {
   sweep(kLanes, "t.csv");
   const std::string before = text("t.csv");
