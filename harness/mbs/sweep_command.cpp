@@ -62,13 +62,17 @@ void add_sweep_command(CLI::App& app, int& status) {
                       ->type_name("i/K"));
   apart.push_back(command->add_flag("--resume", options->resume,
                                     "go on where the same sweep was ended (OUTPUT.journal)"));
-  apart.push_back(command
-      ->add_option("--output", options->output,
-                   "CSV file, compressed if it ends in .gz: a row a lane, with its values, outcome, figures, and last, least and "
-                   "largest value of each of the scene's \"outputs\"")
-      ->required());
+  apart.push_back(
+      command->add_flag("--check", options->check,
+                        "only look whether a lane has values that are refused: runs and "
+                        "writes nothing, and needs no --output"));
+  apart.push_back(command->add_option("--output", options->output,
+                                      "CSV file, compressed if it ends in .gz: a row a lane, with "
+                                      "its values, outcome, figures, and last, least and "
+                                      "largest value of each of the scene's \"outputs\""));
   for (CLI::Option* option : apart) option->configurable(false);
   command->callback([options, command, &status] {
+    if (!options->check && options->output.empty()) throw CLI::RequiredError("--output");
     options->identity = command->config_to_str(/*default_also=*/true);
     status = sweep(*options);
   });

@@ -20,6 +20,7 @@ struct SweepOptions {
   int jobs = 1;
   std::string shard;
   bool resume = false;
+  bool check = false;  // prepares the lanes only
   std::string output;
   std::string identity;  // all options that the rows depend on
 };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "mbs/file_names.hpp"
@@ -42,15 +43,23 @@ std::pair<long, long> shard_of(const Journal& part) {
                                shown(part.path()), number, count));
 }
 
-void require_all_blocks(const Journal& part) {
+/// The first that it should have and does not.
+std::optional<long> missing_block(const Journal& part) {
   const auto [number, step] = shard_of(part);
   const long count = part.head().at("blocks");
   for (long block = number - 1; block < count; block += step) {
-    if (part.is_whole() && part.has(block)) continue;
-    throw UsageError(fmt::format("{}: this part is not finished (block {} of {}), its command with "
-                                 "--resume finishes it",
-                                 shown(part.path()), block, count));
+    if (!part.has(block)) return block;
   }
+  return std::nullopt;
+}
+
+void require_all_blocks(const Journal& part) {
+  const auto block = missing_block(part);
+  if (!block) return;
+  throw UsageError(fmt::format(
+      "{}: {} (block {} of {} is missing), its command with --resume {} it", shown(part.path()),
+      part.damage() ? "this part is damaged or was changed" : "this part is not finished", *block,
+      part.head().at("blocks").get<long>(), part.damage() ? "mends" : "finishes"));
 }
 
 /// What was left beside `path` by a process that was killed while it wrote the table.
@@ -97,6 +106,8 @@ int write_table(const std::vector<const Journal*>& parts, const std::string& out
   table.commit();
   return report(head, head.at("lanes"), all);
 }
+
+bool has_all_blocks(const Journal& part) { return !missing_block(part); }
 
 int finish_part(const Journal& part) {
   require_all_blocks(part);

@@ -15,6 +15,9 @@ void require_same_sweep(const Journal& journal, const nlohmann::json& head);
 /// left beside `output` by a process that was killed while it did this.
 int write_table(const std::vector<const Journal*>& parts, const std::string& output);
 
+/// Whether all blocks of a part are there, not damaged.
+bool has_all_blocks(const Journal& part);
+
 /// Says how a part went; the exit status.
 int finish_part(const Journal& part);
 

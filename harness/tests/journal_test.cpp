@@ -26,7 +26,7 @@ TEST(SweepJournal, HasWhatWasAdded) {
   const Journal journal(path);
   EXPECT_EQ(journal.head(), kHead);
   EXPECT_EQ(journal.size(), 2U);
-  EXPECT_TRUE(journal.is_whole());
+  EXPECT_FALSE(journal.damage());
   EXPECT_EQ(journal.read(7), "seven\nlines");
   EXPECT_EQ(journal.read(2), "");
   EXPECT_FALSE(journal.has(1));
@@ -49,7 +49,7 @@ TEST(SweepJournal, LosesNoMoreThanTheBlockThatWasCut) {
   const std::size_t first = whole.find("block 1");
   for (std::size_t length = first; length < whole.size(); ++length) {
     std::ofstream(path, std::ios::binary) << whole.substr(0, length);
-    EXPECT_EQ(Journal(path).is_whole(), length == first);
+    EXPECT_FALSE(Journal(path).damage()) << length;
     Journal journal(path, kHead);
     EXPECT_TRUE(journal.has(0)) << length;
     EXPECT_FALSE(journal.has(1)) << length;
@@ -65,18 +65,76 @@ TEST(SweepJournal, LosesNoMoreThanALastBlockThatIsDamaged) {
   std::string changed = whole;
   changed.back() = '\0';
   std::ofstream(path, std::ios::binary) << changed;
-  EXPECT_THROW(Journal{path}, UsageError);  // who only reads cannot do it again
+  EXPECT_EQ(Journal(path).damage(), whole.find("block 1"));
   {
     Journal journal(path, kHead);
-    EXPECT_TRUE(journal.has(0) && !journal.has(1));
+    EXPECT_TRUE(journal.has(0) && !journal.has(1) && journal.damage());
     journal.add(1, "second");
   }
-  EXPECT_EQ(test::file_text(path), whole);
-  changed = whole;
-  changed[whole.find("first")] = '\0';
+  EXPECT_EQ(test::file_text(path), whole);  // the damaged one was dropped
+}
+
+/// Three blocks of lines.
+std::string three_blocks(const std::string& path) {
+  {
+    Journal journal(path, kHead);
+    for (const long block : {4, 0, 2}) {
+      journal.add(block, "{}\n" + std::to_string(block) + ",plausible\n0,\"a\nb\"\n");
+    }
+  }
+  return test::file_text(path);
+}
+
+/// Whatever is changed, cut out or put in before it: a block is found, and the others can be added.
+TEST(SweepJournal, LosesOnlyTheBlocksThatAreDamaged) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  const std::string whole = three_blocks(path);
+  const std::size_t first = whole.find("block 4"), second = whole.find("block 0");
+  const auto expect_mended = [&](const std::string& changed, std::size_t damage) {
+    std::ofstream(path, std::ios::binary) << changed;
+    {
+      Journal journal(path, kHead);
+      ASSERT_TRUE(journal.has(2)) << changed;
+      EXPECT_EQ(journal.damage(), damage) << changed;
+      EXPECT_LT(journal.size(), 3U) << changed;
+      for (const long block : {0, 4}) {
+        if (!journal.has(block)) journal.add(block, "again");
+      }
+    }
+    const Journal mended(path);
+    EXPECT_EQ(mended.size(), 3U) << changed;
+    EXPECT_EQ(mended.read(2), "{}\n2,plausible\n0,\"a\nb\"\n") << changed;
+  };
+  for (std::size_t i = first; i < second; ++i) {
+    std::string changed = whole;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    expect_mended(changed, first);
+    expect_mended(whole.substr(0, i) + whole.substr(i + 1), first);
+    expect_mended(whole.substr(0, i) + whole.substr(second + 8), first);  // within the next header
+  }
+  std::string larger = whole;
+  expect_mended(larger.insert(first + std::string("block 4 ").size(), "9"), first);
+  larger = whole;
+  expect_mended(larger.insert(second + std::string("block 0 ").size(), "9"), second);
+}
+
+/// The damage stays in the file, behind which its block is.
+TEST(SweepJournal, HasWhatWasMended) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  std::string changed = two_blocks(path);
+  changed[changed.find("first")] = '\0';
   std::ofstream(path, std::ios::binary) << changed;
-  EXPECT_THROW(Journal(path, kHead), UsageError);
-  EXPECT_EQ(test::file_text(path), changed);
+  {
+    Journal journal(path, kHead);
+    EXPECT_TRUE(!journal.has(0) && journal.has(1));
+    journal.add(0, "first");
+    journal.scan();
+    EXPECT_EQ(journal.read(0), "first");
+  }
+  EXPECT_EQ(Journal(path).read(0), "first");
+  EXPECT_EQ(Journal(path, kHead).read(1), "second");
 }
 
 TEST(SweepJournal, BeginsWhereNoHeadWasWritten) {
@@ -111,8 +169,8 @@ TEST(SweepJournal, SeesAnyChange) {
     changed[i] = static_cast<char>(changed[i] ^ 1);
     std::ofstream(path, std::ios::binary) << changed;
     try {
-      const Journal journal(path);  // a longer size looks like a block that was cut
-      EXPECT_FALSE(journal.is_whole() && journal.size() == 2 && journal.has(0) && journal.has(1)) << i;
+      const Journal journal(path);
+      EXPECT_FALSE(journal.has(0) && journal.has(1)) << i;
     } catch (const UsageError&) {
     }
   }

@@ -121,6 +121,17 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(files(), 3U);
 }
 
+TEST_F(SweepParts, AJournalWithoutABlockIsNothingToGoOnWith) {
+  sweep(kLanes, "whole.csv");
+  { const Journal begun(at("t.csv.journal"), {{"sweep", "ended while it looked at its lanes"}}); }
+  EXPECT_EQ(sweep(kLanes, "t.csv").status, 1);
+  EXPECT_EQ(text("t.csv"), text("whole.csv"));
+  const auto refused = sweep("four-bar:1 --jobs 2 --vary rods/A0-B0/mass=1:-1:20", "bad.csv");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.errors.find("lane 11 of 20"), std::string::npos) << refused.errors;
+  EXPECT_EQ(files(), 2U);  // nothing of the last
+}
+
 TEST_F(SweepParts, AFinishedTableIsNotMadeAgainByResume) {
   sweep(kLanes, "t.csv");
   const std::string before = text("t.csv");
@@ -193,6 +204,39 @@ TEST_F(SweepParts, AFinishedPartIsNotDoneAgain) {
   EXPECT_EQ(sweep(kLanes + "--shard 2/2 --resume", "1").status, 2);  // another part
 }
 
+TEST_F(SweepParts, APartThatWasCutOrDamagedIsMendedByItsCommand) {
+  const std::string command = kLanes + "--shard 1/2 ";
+  sweep(kLanes, "whole.csv");
+  for (const char* part : {"1", "2"}) sweep(kLanes + "--shard " + part + "/2", part);
+  const std::string part = text("1");
+  std::string flipped = part, larger = part;
+  flipped[flipped.find("plausible")] = 'P';  // in its first block
+  larger.insert(larger.find("block 2 ") + 8, "9");
+  const struct {
+    std::string text;
+    bool is_damaged;
+  } cases[] = {{part.substr(0, part.size() - 10), false},
+               {part.substr(0, part.find("block 2 ")), false},
+               {"", false},
+               {flipped, true},
+               {larger, true}};
+  for (const auto& [changed, is_damaged] : cases) {
+    write("1", changed);
+    EXPECT_EQ(merge("1 2").status, 2);
+    EXPECT_EQ(sweep(command, "1").status, 2);  // without --resume
+    EXPECT_EQ(text("1"), changed);
+    const auto mended = sweep(command + "--resume --jobs 2", "1");
+    EXPECT_EQ(mended.status, 1) << mended.errors;  // for the lanes that cannot be assembled
+    EXPECT_EQ(mended.errors.find("note: ") != std::string::npos, is_damaged) << mended.errors;
+    EXPECT_EQ(mended.errors.find("2 of 3 blocks are there") != std::string::npos, is_damaged);
+    EXPECT_EQ(sweep(command + "--resume", "1").errors.find("note: "), std::string::npos);
+    EXPECT_EQ(merge("1 2").status, 1);
+    EXPECT_EQ(text("out.csv"), text("whole.csv"));
+    std::filesystem::remove(at("out.csv"));
+  }
+  EXPECT_EQ(files(), 3U);
+}
+
 TEST_F(SweepParts, AJobThatEndsIsSaid) {
   if (MBS_SANITIZE) GTEST_SKIP() << "the sanitizers report the crash themselves, at length";
   const auto run = sweep("four-bar:1 --vary gravity/1=-12:-6:4 --jobs 2", "t.csv", "control/crashes");
@@ -211,13 +255,15 @@ TEST_F(SweepParts, RefuseWhatDoesNotBelongTogether) {
   std::string changed = second;
   changed.replace(changed.find("plausible"), 9, "plausiblE");
   write("changed", changed);
-  expect_refusal(merge("1 changed"), {"changed: block ", "damaged or was changed"});
+  expect_refusal(merge("1 changed"),
+                 {"changed: this part is damaged or was changed (block ", "--resume"});
   changed = second;
   changed.replace(changed.find("\"lanes\":21"), 10, "\"lanes\":22");
   write("changed", changed);
   expect_refusal(merge("1 changed"), {"its head is damaged"});
   write("cut", second.substr(0, second.size() - 10));
-  expect_refusal(merge("1 cut"), {"cut: this part is not finished", "--resume"});
+  expect_refusal(merge("1 cut"),
+                 {"cut: this part is not finished (block 5 of 6 is missing)", "--resume"});
   write("empty", "");
   expect_refusal(merge("1 empty"), {"empty: it is no part of a sweep"});
   sweep(kLanes + "--step 1e-3 --shard 2/2", "other");

@@ -217,6 +217,32 @@ TEST_F(SweepProgram, RefusesBadInputBeforeAnythingRuns) {
   expect_refusal("'" + scene + "' --vary masses/C/mass=1,2", {"no \"C\" in masses", "one of B"});
 }
 
+TEST_F(SweepProgram, ChecksAllLanesOfAllPartsBeforeTheyRun) {
+  const auto check = [](const std::string& arguments) {
+    return test::run_program(MBS_CONTROLS,
+                             "sweep --implementation batch/sound four-bar:1 " + arguments);
+  };
+  const std::string good = "--vary rods/A0-B0/length=1,3 --vary gravity/1=-9,-8,-7 ";
+  const auto sound = check(good + "--check");
+  EXPECT_EQ(sound.status, 0) << sound.errors;
+  EXPECT_EQ(sound.output, "6 lanes: no value is refused\n");
+  EXPECT_EQ(check(good + "--check --shard 2/2").output, "2 lanes: no value is refused\n");
+  const std::string bad = "--duration 0.1 --vary rods/A0-B0/mass=1,1,1,1,1,1,1,-1 ";
+  for (const char* jobs : {"1", "2"}) {
+    const auto refused = check(bad + "--check --jobs " + jobs);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.output, "");
+    EXPECT_NE(refused.errors.find("lane 8 of 8 (rods/A0-B0/mass = -1): "), std::string::npos)
+        << refused.errors;
+  }
+  EXPECT_EQ(check(bad + "--check --shard 1/2").status, 0);
+  EXPECT_EQ(sweep("four-bar:1 " + bad + "--check").status, 2);
+  EXPECT_TRUE(folder_.is_empty());
+  const auto none = check(good);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.errors.find("--output is required"), std::string::npos) << none.errors;
+}
+
 TEST_F(SweepProgram, WhatItSaysComesBehindATableOnStandardOutput) {
   file_ = "/dev/stdout";  // here a file
   const auto run = sweep("four-bar:1 --duration 0.1 --vary gravity/1=-9,-8");

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "support/scene_support.hpp"
 #include "sweep/sample.hpp"
@@ -53,12 +54,29 @@ TEST(SweepSample, BelongsToItsSeed) {
 
 /// Of 2^k points of a Sobol sequence, also of a shifted one, each interval of length 2^-k has one.
 TEST(SweepSample, SobolIsEven) {
-  const auto values = draw({kUniform, kUniform, kUniform}, {64, 11, true});
-  for (const std::vector<double>& axis : values) {
-    std::set<int> cells;
-    for (const double x : axis) cells.insert(static_cast<int>((x - 2.0) / 2.0 * 64));
-    EXPECT_GE(cells.size(), 63U);  // the sequence leaves its first point, 0, out
+  for (const long count : {1, 8, 64}) {
+    for (const std::uint64_t seed : {1, 11}) {
+      const auto values = draw({kUniform, kUniform, kUniform}, {count, seed, true});
+      for (const std::vector<double>& axis : values) {
+        std::set<long> cells;
+        for (const double x : axis) {
+          cells.insert(static_cast<long>((x - 2.0) / 2.0 * static_cast<double>(count)));
+        }
+        EXPECT_EQ(cells.size(), static_cast<std::size_t>(count)) << seed;
+      }
+    }
   }
+}
+
+/// In the plane of the first two numbers, each square of 1/8 by 1/8 has one of 64 points.
+TEST(SweepSample, SobolIsEvenInThePlane) {
+  const auto values = draw({kUniform, kUniform}, {64, 3, true});
+  std::set<std::pair<int, int>> squares;
+  for (std::size_t i = 0; i < 64; ++i) {
+    squares.emplace(static_cast<int>((values[0][i] - 2.0) * 4),
+                    static_cast<int>((values[1][i] - 2.0) * 4));
+  }
+  EXPECT_EQ(squares.size(), 64U);
 }
 
 TEST(SweepSample, ReadsDistributions) {

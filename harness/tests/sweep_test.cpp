@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 
 #include "controls/batches.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/folder.hpp"
 #include "support/scene_support.hpp"
 #include "sweep/lane.hpp"
 #include "sweep/scene_number.hpp"
@@ -131,6 +133,28 @@ TEST(SweepGrid, RefusesWhatCannotBeVaried) {
   expect_parts(error("four-bar:1,fill=0.9", {"gravity/1=1"}), {"fill"});
   expect_parts(error("four-bar:0", {"gravity/1=1"}), {"allowed is a whole number"});
   expect_parts(error("nowhere.json", {"gravity/1=1"}), {"no such file"});
+}
+
+TEST(SweepGrid, RefusesAParameterThatAnotherAxisLeavesUnused) {
+  const test::Folder folder;
+  const std::string scene = folder.file("scene.json");
+  std::ofstream(scene) << R"({"parameters": {"m": 2, "k": "=3*m", "v": 1}, "points": [
+    {"name": "A", "position": [0, 0], "fixed": true},
+    {"name": "B", "position": [0, -2], "velocity": ["=v", 0]}],
+    "rods": [{"between": ["A", "B"], "mass": 1}], "masses": [{"point": "B", "mass": "=k"}]})";
+  const auto error = [&](const std::vector<std::string>& vary) {
+    return usage_error_of([&] { SweepGrid(scene, vary); });
+  };
+  const std::vector<std::vector<std::string>> unused{
+      {"m=1,2", "k=5"}, {"k=5", "v=1", "m=uniform:1:2"}, {"masses/B/mass=1", "m=1"}};
+  for (const std::vector<std::string>& vary : unused) {
+    expect_parts(error(vary), {"--vary \"m\": found a parameter that nothing uses where --vary \"",
+                               "puts numbers"});
+  }
+  expect_parts(error({"m=1", "k=1", "masses/B/mass=1"}),
+               {R"(--vary "k": found a parameter that nothing uses where --vary "masses/B/mass")"});
+  EXPECT_EQ(error({"m=1,2", "v=1,2"}), "no error");
+  EXPECT_EQ(error({"k=1,2", "v=1,2"}), "no error");  // m may be left unused: it is not varied
 }
 
 TEST(SweepGrid, KnowsTheFourBar) {

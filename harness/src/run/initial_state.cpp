@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,29 @@ namespace {
 using Real = long double;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using Sparse = Eigen::SparseMatrix<Real>;
+using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower>;
+
+/// Those of `matrix`. The order of elimination, which takes longest to find where it is small, is
+/// that of the matrix before if it has the same pattern, as in lanes of a sweep.
+std::shared_ptr<const Factors> factors_of(const Sparse& matrix) {
+  constexpr Eigen::Index kMostKept = 10'000;  // entries
+  thread_local std::shared_ptr<Factors> last;
+  thread_local std::vector<int> last_pattern;
+  std::vector<int> pattern(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1);
+  pattern.insert(pattern.end(), matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  auto factors = last;
+  last.reset();
+  if (!factors || factors.use_count() > 1 || pattern != last_pattern) {
+    factors = std::make_shared<Factors>();
+    factors->analyzePattern(matrix);
+  }
+  factors->factorize(matrix);
+  if (matrix.nonZeros() <= kMostKept) {
+    last = factors;
+    last_pattern = std::move(pattern);
+  }
+  return factors;
+}
 
 /// [M, J^T; J, -eps]: quasi-definite, so LDL^T without pivoting exists whatever the rank of J.
 class SaddlePoint {
@@ -39,16 +63,16 @@ class SaddlePoint {
     for (int k = 0; k < m_; ++k) entries.emplace_back(n_ + k, n_ + k, -epsilon_);
     Sparse matrix(n_ + m_, n_ + m_);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    factors_.compute(matrix);
+    factors_ = factors_of(matrix);
   }
 
-  [[nodiscard]] Vector solve(const Vector& right) const { return factors_.solve(right); }
+  [[nodiscard]] Vector solve(const Vector& right) const { return factors_->solve(right); }
   [[nodiscard]] Real epsilon() const { return epsilon_; }
 
  private:
   int n_, m_;
   Real epsilon_ = 0;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> factors_;
+  std::shared_ptr<const Factors> factors_;
 };
 
 }  // namespace

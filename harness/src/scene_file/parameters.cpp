@@ -82,16 +82,43 @@ class Evaluator {
     return result;
   }
 
-  void require_all_used() const {
-    if (parameters_ == nullptr) return;
+  /// What expressions of `value` name, and theirs; whatever the numbers are.
+  void use(const json& value) {
+    if (is_expression(value)) {
+      for (const std::string& name : names_in(value.get_ref<const std::string&>().substr(1))) {
+        const bool is_known = parameters_ != nullptr && parameters_->contains(name);
+        if (is_known && used_.insert(name).second) use((*parameters_)[name]);
+      }
+    } else if (value.is_structured()) {
+      for (const json& member : value) use(member);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> unused_names() const {
+    std::vector<std::string> names;
+    if (parameters_ == nullptr) return names;
     for (const auto& [name, value] : parameters_->items()) {
-      if (used_.contains(name)) continue;
-      JsonNode(value, where_, path_of_key(kParameters, name))
+      if (!used_.contains(name)) names.push_back(name);
+    }
+    return names;
+  }
+
+  void require_all_used() const {
+    for (const std::string& name : unused_names()) {
+      JsonNode((*parameters_)[name], where_, path_of_key(kParameters, name))
           .fail("a parameter that nothing uses", "one that an expression names");
     }
   }
 
  private:
+  /// Those that are no constants yet.
+  std::vector<std::string> names_in(const std::string& expression) {
+    parser_.SetExpr(expression);
+    std::vector<std::string> names;  // the parser may be used for these before it is for the whole
+    for (const auto& [name, unused] : parser_.GetUsedVar()) names.push_back(name);
+    return names;
+  }
+
   /// Of an expression, or of a parameter that is a number.
   double number(const json& value, const std::string& path) {
     const JsonNode node(value, where_, path);
@@ -103,10 +130,7 @@ class Evaluator {
     }
     const std::string found = in_quotes(node.text());
     try {
-      parser_.SetExpr(text);
-      std::vector<std::string> names;  // the parser is used for these before it is for `text`
-      for (const auto& [name, unused] : parser_.GetUsedVar()) names.push_back(name);
-      for (const std::string& name : names) define(name, node);
+      for (const std::string& name : names_in(text)) define(name, node);
       parser_.SetExpr(text);
       const double result = parser_.Eval();
       if (parser_.GetNumResults() != 1) node.fail(found, "one expression");
@@ -168,6 +192,14 @@ std::optional<json> with_numbers(const json& document, const std::string& where,
   json result = evaluator.resolved(document, {});
   if (unused == Unused::refused) evaluator.require_all_used();
   return result;
+}
+
+std::vector<std::string> unused_parameters(const json& document, const std::string& where) {
+  Evaluator evaluator(document, where);
+  for (const auto& [key, value] : document.items()) {
+    if (key != kParameters) evaluator.use(value);
+  }
+  return evaluator.unused_names();
 }
 
 }  // namespace mbs

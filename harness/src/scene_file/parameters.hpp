@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene_file/load_scene.hpp"
 
@@ -16,6 +17,11 @@ namespace mbs {
 /// value that is not finite, wrong syntax.
 std::optional<nlohmann::json> with_numbers(const nlohmann::json& document, const std::string& where,
                                            Unused unused);
+
+/// Names of the parameters that nothing of the document leads to, of one that with_numbers() takes
+/// but for the values of its numbers.
+std::vector<std::string> unused_parameters(const nlohmann::json& document,
+                                           const std::string& where);
 
 /// Whether a number may be written so.
 bool is_expression(const nlohmann::json& value);

@@ -1,4 +1,5 @@
-// Lines that begin a block: "block NUMBER SIZE CHECKSUM", then so many bytes.
+// A block is a line "block NUMBER SIZE CHECKSUM CHECKSUM", then so many bytes. The first checksum
+// is of these, the second of the line before it: a wrong size would hide all that is behind.
 #include "sweep/journal.hpp"
 
 #include <fcntl.h>
@@ -9,6 +10,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -18,13 +20,35 @@
 namespace mbs {
 namespace {
 
-constexpr std::string_view kBegin = "mbs-sweep ";
+constexpr std::string_view kBegin = "mbs-sweep-2 ", kBlock = "block ";
 constexpr std::size_t kLargestBlock = std::size_t{1} << 30;
 
 std::string digits(uLong crc) { return fmt::format("{:08x}", crc); }
 
-std::string checksum_of_block(long block, const std::string& text) {
-  return checksum(fmt::format("{}\n{}", block, text));
+struct Header {
+  std::size_t begin = 0;  // in its line
+  long block = 0;
+  std::size_t size = 0;
+  std::string sum = {};
+};
+
+std::string line_of_block(long block, const std::string& text) {
+  const std::string line = fmt::format("{}{} {} {}", kBlock, block, text.size(), checksum(text));
+  return fmt::format("{} {}\n", line, checksum(line));
+}
+
+/// Of the line at whose end it is: what is before it may be the end of a damaged block.
+std::optional<Header> header_in(const std::string& line) {
+  const std::size_t last = line.rfind(' ');
+  const std::size_t begin = last == std::string::npos ? last : line.rfind(kBlock, last);
+  if (begin == std::string::npos) return std::nullopt;
+  const std::string summed = line.substr(begin, last - begin);
+  if (checksum(summed) != line.substr(last + 1)) return std::nullopt;
+  std::istringstream words(summed.substr(kBlock.size()));
+  Header header{begin};
+  words >> header.block >> header.size >> header.sum;
+  if (!words || header.block < 0 || header.size > kLargestBlock) return std::nullopt;
+  return header;
 }
 
 /// False on failure, which errno names.
@@ -57,7 +81,7 @@ std::string program_checksum() {
 
 Journal::Journal(const std::string& path) : path_(path), input_(path, std::ios::binary) {
   if (!input_) fail(std::strerror(errno));
-  if (!read_head()) fail("it is no part of a sweep");
+  if (!read_head()) fail("it is no part of a sweep by this version of mbs");
   scan();
 }
 
@@ -74,7 +98,6 @@ Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(pa
   if (read_head()) {
     scan();
     if (!end_at(end_)) fail(std::strerror(errno));
-    is_whole_ = true;
   } else {
     begin(fmt::format("{}{} {}\n", kBegin, checksum(text), text));
     head_ = head;
@@ -85,12 +108,15 @@ Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(pa
 bool Journal::read_head() {
   std::string line, begin, sum, head;
   std::getline(input_, line);
-  if (!kBegin.starts_with(line.substr(0, kBegin.size()))) fail("it is no part of a sweep");
+  if (!kBegin.starts_with(line.substr(0, kBegin.size())))
+    fail("it is no part of a sweep by this version of mbs");
   if (input_.eof()) return false;
   std::istringstream words(line);
   words >> begin >> sum;
   std::getline(words >> std::ws, head);
-  if (sum != checksum(head)) fail("its head is damaged or was changed");
+  if (sum != checksum(head)) {
+    fail("its head is damaged or was changed, nothing can be done with it but to remove it");
+  }
   head_ = nlohmann::json::parse(head);
   end_ = line.size() + 1;
   return true;
@@ -117,42 +143,42 @@ void Journal::fail(const std::string& what) const {
 }
 
 void Journal::scan() {
-  input_.clear();
-  input_.seekg(static_cast<std::streamoff>(end_));
-  std::string line, text;
-  while (std::getline(input_, line)) {
-    is_whole_ = false;
+  std::string line;
+  bool is_cut = false;  // what is behind end_ is a block that was not written to its end
+  for (std::size_t at = end_;;) {
+    input_.clear();
+    input_.seekg(static_cast<std::streamoff>(at));
+    std::getline(input_, line);
     if (input_.eof()) return;  // no end of the line
-    std::istringstream words(line);
-    std::string word, sum;
-    long block = -1;
-    std::size_t size = 0;
-    words >> word >> block >> size >> sum;
-    if (!words || word != "block" || block < 0 || size > kLargestBlock) {
-      fail(fmt::format("it is damaged or was changed at byte {}", end_));
+    const auto header = header_in(line);
+    const std::size_t begin = at + (header ? header->begin : 0);
+    at += line.size() + 1;
+    const auto text = header ? read_at(at, header->size) : std::nullopt;
+    const bool is_block = text && checksum(*text) == header->sum;
+    is_cut = !is_block && (is_cut || (begin == end_ && header && !text));
+    if (!damage_ && (is_block ? begin > end_ : !is_cut)) damage_ = end_;
+    if (!is_block) continue;  // one may begin at any later line
+    if (!blocks_.emplace(header->block, Record{at, header->size}).second) {
+      fail(fmt::format("block {} is there twice", header->block));
     }
-    text.resize(size);
-    input_.read(text.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::size_t>(input_.gcount()) < size) return;
-    if (checksum_of_block(block, text) != sum) {
-      const bool is_last = input_.peek() == std::ifstream::traits_type::eof();
-      if (is_last && file_) return;  // it is done again
-      fail(fmt::format("block {} is damaged or was changed", block));
-    }
-    const std::size_t offset = end_ + line.size() + 1;
-    if (!blocks_.emplace(block, Record{offset, size}).second) {
-      fail(fmt::format("block {} is there twice", block));
-    }
-    end_ = offset + size;
-    is_whole_ = true;
+    end_ = at += header->size;
   }
+}
+
+/// Nothing where the file ends before.
+std::optional<std::string> Journal::read_at(std::size_t offset, std::size_t size) const {
+  std::string text(size, '\0');
+  input_.clear();
+  input_.seekg(static_cast<std::streamoff>(offset));
+  input_.read(text.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::size_t>(input_.gcount()) < size) return std::nullopt;
+  return text;
 }
 
 void Journal::add(long block, const std::string& text) {
   const int file = ::fileno(file_.get());
   const off_t begin = ::lseek(file, 0, SEEK_CUR);  // copies of this process move it too
-  const std::string head = fmt::format("block {} {} {}\n", block, text.size(), checksum_of_block(block, text));
-  if (append_all(file, head + text)) return;
+  if (append_all(file, line_of_block(block, text) + text)) return;
   const int error = errno;
   end_at(static_cast<std::size_t>(begin));  // others may find room for theirs
   fail(fmt::format("{} (what is done stays: --resume)", std::strerror(error)));
@@ -161,12 +187,9 @@ void Journal::add(long block, const std::string& text) {
 std::string Journal::read(long block) const {
   const auto found = blocks_.find(block);
   if (found == blocks_.end()) fail(fmt::format("block {} is not there", block));
-  const auto [offset, size] = found->second;
-  std::string text(size, '\0');
-  input_.clear();
-  input_.seekg(static_cast<std::streamoff>(offset));
-  if (!input_.read(text.data(), static_cast<std::streamsize>(size))) fail("it cannot be read");
-  return text;
+  auto text = read_at(found->second.offset, found->second.size);
+  if (!text) fail("it cannot be read");
+  return *std::move(text);
 }
 
 }  // namespace mbs

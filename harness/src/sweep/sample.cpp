@@ -49,7 +49,8 @@ std::vector<std::vector<double>> draw(const std::vector<Distribution>& distribut
   for (auto& shift : shifts) shift = sampling.sobol ? random() : 0;
   for (long i = 0; i < sampling.count; ++i) {
     for (std::size_t k = 0; k < distributions.size(); ++k) {
-      const std::uint64_t bits = sampling.sobol ? sobol() ^ shifts[k] : random();
+      // Boost's sequence leaves its first point, 0, out, without which 2^k points are not even.
+      const std::uint64_t bits = !sampling.sobol ? random() : (i == 0 ? 0 : sobol()) ^ shifts[k];
       values[k].push_back(value_of(distributions[k], random_share(bits)));
     }
   }

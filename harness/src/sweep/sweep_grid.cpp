@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "printable.hpp"
 #include "scene_file/load_scene.hpp"
+#include "scene_file/parameters.hpp"
 #include "sweep/scene_number.hpp"
 #include "sweep/value_range.hpp"
 #include "usage_error.hpp"
@@ -16,6 +19,7 @@ SweepGrid::SweepGrid(const std::string& scene, const std::vector<std::string>& v
                      const Sampling& sampling)
     : name_(scene), document_(load_document(scene)), base_(scene_of(document_, name_)) {
   for (const std::string& text : vary) add_axis(text);
+  require_effect();
   add_samples(sampling);
 }
 
@@ -35,6 +39,27 @@ void SweepGrid::add_axis(const std::string& text) {
     multiply_lanes(static_cast<long>(axis.values.size()), "--vary " + in_quotes(path));
   }
   axes_.push_back(std::move(axis));
+}
+
+/// Numbers in the place of expressions may leave a parameter unused; whoever varies that one as
+/// well would see a result that does not depend on it.
+void SweepGrid::require_effect() const {
+  nlohmann::json document = document_;
+  for (const SweepAxis& axis : axes_) document[axis.number] = 0.0;
+  for (const std::string& name : unused_parameters(document, name_)) {
+    const auto parameter = nlohmann::json::json_pointer("/parameters") / name;
+    const auto varied = std::ranges::find(axes_, parameter, &SweepAxis::number);
+    if (varied == axes_.end()) continue;
+    std::vector<std::string> others;
+    for (const SweepAxis& other : axes_) {
+      const bool is_replaced = is_expression(document_.at(other.number));
+      if (is_replaced && other.number != parameter) others.push_back(in_quotes(other.path));
+    }
+    refuse_vary(varied->path,
+                fmt::format("a parameter that nothing uses where --vary {} puts numbers",
+                            fmt::join(others, ", ")),
+                "one that an expression still names");
+  }
 }
 
 void SweepGrid::multiply_lanes(long count, const std::string& option) {
@@ -82,10 +107,10 @@ std::vector<double> SweepGrid::values(long lane) const {
 }
 
 Scene SweepGrid::scene(long lane) const {
-  nlohmann::json document = document_;
+  if (varied_.is_null()) varied_ = document_;
   const std::vector<double> changed = values(lane);
-  for (std::size_t i = 0; i < axes_.size(); ++i) document[axes_[i].number] = changed[i];
-  return scene_of(document, name_, Unused::allowed);  // base_ was looked at
+  for (std::size_t i = 0; i < axes_.size(); ++i) varied_[axes_[i].number] = changed[i];
+  return scene_of(varied_, name_, Unused::allowed);  // base_ was looked at
 }
 
 std::string SweepGrid::describe(long lane) const {

@@ -26,7 +26,8 @@ struct SweepAxis {
 class SweepGrid {
  public:
   /// `vary` has PATH=RANGE of find_number() and parse_range(). Throws UsageError, also on more than
-  /// kMostLanes lanes and on a number that is varied twice.
+  /// kMostLanes lanes, on a number that is varied twice and on a parameter that others leave
+  /// unused.
   SweepGrid(const std::string& scene, const std::vector<std::string>& vary,
             const Sampling& sampling = {});
 
@@ -45,6 +46,7 @@ class SweepGrid {
 
  private:
   void add_axis(const std::string& text);
+  void require_effect() const;
   void add_samples(const Sampling& sampling);
   void multiply_lanes(long count, const std::string& option);
 
@@ -54,6 +56,7 @@ class SweepGrid {
   std::vector<SweepAxis> axes_;
   long lanes_ = 1;  // of the grid without samples, then of all
   long samples_ = 1;
+  mutable nlohmann::json varied_;  // document_ with the values of the lane that was asked for last
 };
 
 }  // namespace mbs
