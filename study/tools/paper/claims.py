@@ -13,7 +13,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, phases, profiled, real_mechanisms
+from study.tools.paper.numbers import DENSE, GAINED, HYBRID, SCALAR, losses, percent, phases, profiled, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -103,7 +103,7 @@ def _vector(known):
     """Of each other machine: whether the one with the higher rate is the one where the dense step gained more than the scalar one."""
     if not known.compared:
         return None, ""
-    gained, rates = machine.gains(known.compared, (HYBRID, SCALAR)), [machine.rates(one).get("flops_per_ns") for one in known.compared]
+    gained, rates = machine.gains(known.compared, GAINED), [machine.rates(one).get("flops_per_ns") for one in known.compared]
     if None in rates or HYBRID not in gained or SCALAR not in gained:
         return None, ""
     dense = [vector / scalar for vector, scalar in zip(gained[HYBRID][1:], gained[SCALAR][1:])]

@@ -23,6 +23,7 @@ NOT_MEASURED = "not measured"
 NOTHING = ("", "–", "nan")  # texts of what is not measured
 DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # Eigen's Cholesky kernels, assembled densely and sparsely
 SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
+GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines, on scenes in common
 
 
 # text: as it is printed; table: "part/table", or the file that it comes from; records: names of records
@@ -138,7 +139,7 @@ def _machines(known):
     shares = agreement.shares(agreement.mechanisms(sets, known.agreed))
     kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
-    rates, gained = [machine.rates(one) for one in sets], machine.gains(sets) | machine.gains(sets, (HYBRID, SCALAR))
+    rates, gained = [machine.rates(one) for one in sets], machine.gains(sets, GAINED)
     beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
               for name, rate in (("rate", "flops_per_ns"), ("latency", "add_ns"))}
     steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}

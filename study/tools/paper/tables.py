@@ -15,7 +15,7 @@ from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import ledger, summary
 from study.tools.merge import machine
-from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real, real_mechanisms
+from study.tools.paper.numbers import GAINED, led, losses, real, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -32,7 +32,6 @@ RANKED = 12     # libraries of the table of ranks
 DEFAULTS = 6    # of other tools: the least costly and the two most costly
 MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
-GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
 # Functions of Known, which give LaTeX.
 TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "leaves", "defaults", "largest", "engines", "mechanisms")
 
@@ -106,7 +105,7 @@ def claims(known):
 def machines(known):
     """What was measured on each machine that is compared, a column each."""
     sets = known.compared or [known]
-    found, gained = [_machine(one) for one in sets], machine.gains(sets, GAINED)  # on scenes in common, or means would not be comparable
+    found, gained = [_machine(one) for one in sets], machine.gains(sets, GAINED)
     rows = [(what, *(mine[what] for mine in found)) for what in found[0]]
     rows += [(f"a step with {name}, times that on {sets[0].folder.name}", *map(number, gained[name]))
              for name in GAINED if name in gained and known.compared]
