@@ -94,9 +94,8 @@ Row unit_row(std::span<const JacobianEntry> entries, const std::vector<int>& ord
   return row;
 }
 
-}  // namespace
-
-std::optional<RowRank> find_rank(int rows, int cols, std::span<const JacobianEntry> entries) {
+std::optional<RowRank> rank_by_rotations(int rows, int cols,
+                                         std::span<const JacobianEntry> entries) {
   RowRank result;
   if (rows == 0 || cols == 0) {
     for (int row = 0; row < rows; ++row) result.dependent.push_back(row);
@@ -116,6 +115,34 @@ std::optional<RowRank> find_rank(int rows, int cols, std::span<const JacobianEnt
     begin = end;
     if (triangle.work() > kRankWork) return std::nullopt;
   }
+  return result;
+}
+
+/// A matrix and what was found.
+struct Found {
+  int rows = -1, cols = -1;
+  std::vector<JacobianEntry> entries = {};
+  std::optional<RowRank> rank = std::nullopt;
+
+  [[nodiscard]] bool is_of(int its_rows, int its_cols,
+                           std::span<const JacobianEntry> its_entries) const {
+    const auto is_same = [](const JacobianEntry& x, const JacobianEntry& y) {
+      return x.row == y.row && x.col == y.col && x.value == y.value;
+    };
+    return rows == its_rows && cols == its_cols &&
+           std::ranges::equal(entries, its_entries, is_same);
+  }
+};
+
+}  // namespace
+
+std::optional<RowRank> find_rank(int rows, int cols, std::span<const JacobianEntry> entries) {
+  // Asked more than once of the same start, and lanes of a sweep often differ in masses only.
+  thread_local Found last;
+  constexpr std::size_t kMostKept = 10'000;  // entries
+  if (last.is_of(rows, cols, entries)) return last.rank;
+  const auto result = rank_by_rotations(rows, cols, entries);
+  if (entries.size() <= kMostKept) last = {rows, cols, {entries.begin(), entries.end()}, result};
   return result;
 }
 
