@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,29 @@ namespace {
 using Real = long double;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using Sparse = Eigen::SparseMatrix<Real>;
+using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower>;
+
+/// Those of `matrix`. The order of elimination, which takes longest to find where it is small, is
+/// that of the matrix before if it has the same pattern, as in lanes of a sweep.
+std::shared_ptr<const Factors> factors_of(const Sparse& matrix) {
+  constexpr Eigen::Index kMostKept = 10'000;  // entries
+  thread_local std::shared_ptr<Factors> last;
+  thread_local std::vector<int> last_pattern;
+  std::vector<int> pattern(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1);
+  pattern.insert(pattern.end(), matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  auto factors = last;
+  last.reset();
+  if (!factors || factors.use_count() > 1 || pattern != last_pattern) {
+    factors = std::make_shared<Factors>();
+    factors->analyzePattern(matrix);
+  }
+  factors->factorize(matrix);
+  if (matrix.nonZeros() <= kMostKept) {
+    last = factors;
+    last_pattern = std::move(pattern);
+  }
+  return factors;
+}
 
 /// [M, J^T; J, -eps]: quasi-definite, so LDL^T without pivoting exists whatever the rank of J.
 class SaddlePoint {
@@ -39,16 +63,41 @@ class SaddlePoint {
     for (int k = 0; k < m_; ++k) entries.emplace_back(n_ + k, n_ + k, -epsilon_);
     Sparse matrix(n_ + m_, n_ + m_);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    factors_.compute(matrix);
+    factors_ = factors_of(matrix);
+    inverse_ = factors_->vectorD().cwiseInverse();
   }
 
-  [[nodiscard]] Vector solve(const Vector& right) const { return factors_.solve(right); }
+  /// To the last bit what Eigen's solve() gives, without its copies and divisions: long double is
+  /// slow.
+  [[nodiscard]] Vector solve(const Vector& right) const {
+    const Eigen::Index size = right.size();
+    if (factors_->info() != Eigen::Success) return Vector::Constant(size, NAN);
+    const auto& place = factors_->permutationP().indices();
+    const auto& lower = factors_->matrixL().nestedExpression();
+    const int *begin = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
+    const Real* value = lower.valuePtr();
+    Vector x(size), result(size);
+    for (Eigen::Index i = 0; i < size; ++i) x[place[i]] = right[i];
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const Real known = x[j];
+      if (known == 0) continue;
+      for (int k = begin[j]; k < begin[j + 1]; ++k) x[row[k]] -= known * value[k];
+    }
+    for (Eigen::Index j = size; j-- > 0;) {
+      Real sum = inverse_[j] * x[j];
+      for (int k = begin[j]; k < begin[j + 1]; ++k) sum -= value[k] * x[row[k]];
+      x[j] = sum;
+    }
+    for (Eigen::Index i = 0; i < size; ++i) result[i] = x[place[i]];
+    return result;
+  }
   [[nodiscard]] Real epsilon() const { return epsilon_; }
 
  private:
   int n_, m_;
   Real epsilon_ = 0;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> factors_;
+  std::shared_ptr<const Factors> factors_;
+  Vector inverse_;  // of D
 };
 
 }  // namespace
