@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "atomic_file.hpp"
@@ -51,8 +52,8 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-/// A value that makes no scene is bad input: found before anything runs.
-void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& blocks) {
+/// Looks at the lanes only: a value that makes no scene is bad input.
+void check_lanes(int jobs, const std::vector<long>& mine, SweepBlocks& blocks) {
   Progress progress(static_cast<double>(mine.size()), "blocks of lanes checked");
   const auto check = [&](long block) {
     blocks.check(block);
@@ -60,7 +61,7 @@ void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& b
   };
   for_blocks(
       jobs, mine, check, [](long, const std::string&) {},
-      [&](std::size_t done) { progress.at(static_cast<double>(done)); });
+      [&](std::size_t, std::size_t done) { progress.at(static_cast<double>(done)); });
 }
 
 /// Whether rows can be kept beside it until it is written, so that a sweep can go on.
@@ -69,6 +70,16 @@ bool is_file(const std::string& path) {
   const fs::file_status status = fs::status(path, ignored);
   return !is_open_already(path) && !path.starts_with("/proc/") &&
          (!fs::exists(status) || fs::is_regular_file(status));
+}
+
+/// Whether it was ended before anything was done.
+bool has_no_blocks(const std::string& path) {
+  try {
+    const Journal journal(path);
+    return journal.size() == 0 && !journal.damage();
+  } catch (const UsageError&) {  // another file
+    return false;
+  }
 }
 
 /// Before anything else: nobody loses by forgetting --resume what hours have given.
@@ -82,6 +93,7 @@ void require_no_other(const std::string& path) {
     throw UsageError(
         fmt::format("{}: another mbs sweep is writing it", printable(path, kLongestPath)));
   }
+  if (has_no_blocks(path) && fs::remove(path, ignored)) return;
   throw UsageError(
       fmt::format("{}: found a sweep that was ended, allowed is to go on with --resume, or to "
                   "remove it",
@@ -124,8 +136,8 @@ nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid,
           {"shard", {shard.index + 1, shard.count}}};
 }
 
-void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& blocks,
-                Journal& journal) {
+/// A value that makes no scene is found before anything runs; if something did, all were looked at.
+void run_blocks(int jobs, const std::vector<long>& mine, SweepBlocks& blocks, Journal& journal) {
   std::vector<long> open;
   for (const long block : mine) {
     if (!journal.has(block)) open.push_back(block);
@@ -138,14 +150,32 @@ void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& bloc
         printable(journal.path(), kLongestPath), *journal.damage(), mine.size() - open.size(),
         mine.size());
   }
-  Progress progress(static_cast<double>(mine.size()), "blocks of lanes");
+  const std::size_t before = journal.size();
+  Progress checked(static_cast<double>(mine.size()), "blocks of lanes checked");
+  Progress run(static_cast<double>(mine.size()), "blocks of lanes");
+  std::function<void(long)> check;
+  if (before == 0) check = [&](long block) { blocks.check(block); };
   for_blocks(
       jobs, open, [&](long block) { return blocks.run(block); },
       [&](long block, const std::string& rows) { journal.add(block, rows); },
-      [&, before = journal.size()](std::size_t done) {
-        progress.at(static_cast<double>(before + done));
-      });
+      [&](std::size_t prepared, std::size_t kept) {
+        const bool is_running = kept > 0 || prepared == 0;
+        (is_running ? run : checked).at(static_cast<double>(is_running ? before + kept : prepared));
+      },
+      check);
   journal.scan();
+}
+
+/// The same; a journal without a block is nothing to go on with.
+void run_or_remove(int jobs, const std::vector<long>& mine, SweepBlocks& blocks, Journal& journal) {
+  try {
+    run_blocks(jobs, mine, blocks, journal);
+  } catch (...) {
+    journal.scan();
+    std::error_code ignored;
+    if (journal.size() == 0) fs::remove(journal.path(), ignored);
+    throw;
+  }
 }
 
 }  // namespace
@@ -157,12 +187,12 @@ int sweep(const SweepOptions& options) {
   const SweepGrid grid(options.scene, options.vary, options.sampling);
   // What is wrong with the options is not said of a lane.
   const StepSettings settings = resolve(options, grid.base()).step;
-  const SweepBlocks blocks(options, grid, *variant.variant);
+  SweepBlocks blocks(options, grid, *variant.variant);
   std::vector<long> mine;
   for (long block = shard.index; block < blocks.count(); block += shard.count)
     mine.push_back(block);
   if (options.check) {
-    require_lanes(options.jobs, mine, blocks);
+    check_lanes(options.jobs, mine, blocks);
     const long lanes = blocks.lanes(mine);
     fmt::print("{} lane{}: no value is refused\n", lanes, lanes == 1 ? "" : "s");
     return 0;
@@ -199,10 +229,8 @@ int sweep(const SweepOptions& options) {
                     printable(options.output, kLongestPath)));
   }
   print_warnings(grid.base().name, options.step.warnings(grid.base().model, settings));
-  const bool is_begun = fs::exists(kept, ignored) && fs::file_size(kept, ignored) > 0;
-  if (!is_begun) require_lanes(options.jobs, mine, blocks);  // else it was done
   Journal journal = open_journal(options.output, kept, head);
-  run_blocks(options.jobs, mine, blocks, journal);
+  run_or_remove(options.jobs, mine, blocks, journal);
   if (is_part) {
     if (!is_made) fs::rename(journal.path(), options.output);
     return finish_part(journal);

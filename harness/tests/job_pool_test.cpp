@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <new>
 #include <numeric>
@@ -30,9 +32,10 @@ TEST(JobPool, KeepsEachBlockOnce) {
   for (const int jobs : {1, 4}) {
     Journal journal(folder.file(std::to_string(jobs)), {{"sweep", "of a test"}});
     std::size_t kept = 0;
-    for_blocks(jobs, blocks_to(400), text_of_block,
-               [&](long block, const std::string& text) { journal.add(block, text); },
-               [&](std::size_t done) { kept = done; });
+    for_blocks(
+        jobs, blocks_to(400), text_of_block,
+        [&](long block, const std::string& text) { journal.add(block, text); },
+        [&](std::size_t, std::size_t done) { kept = done; });
     EXPECT_EQ(kept, 400U);
     journal.scan();
     EXPECT_FALSE(journal.damage());
@@ -46,7 +49,9 @@ void run_pool(int jobs, const std::function<void(long)>& work) {
     work(block);
     return std::string();
   };
-  for_blocks(jobs, blocks_to(40), worked, [](long, const std::string&) {}, [](std::size_t) {});
+  for_blocks(
+      jobs, blocks_to(40), worked, [](long, const std::string&) {},
+      [](std::size_t, std::size_t) {});
 }
 
 std::string fault_of_pool(int jobs, const std::function<void(long)>& work) {
@@ -56,6 +61,48 @@ std::string fault_of_pool(int jobs, const std::function<void(long)>& work) {
     return error.what();
   }
   return "none";
+}
+
+TEST(JobPool, PreparesAllBeforeItWorks) {
+  for (const int jobs : {1, 4}) {
+    const test::Folder folder, prepared;
+    Journal journal(folder.file("j"), {{"sweep", "of a test"}});
+    const auto count = [&] {
+      const auto files = std::filesystem::directory_iterator(prepared.file(""));
+      return std::to_string(std::distance(files, {}));
+    };
+    const auto touch = [&](long block) { std::ofstream(prepared.file(std::to_string(block))); };
+    for_blocks(
+        jobs, blocks_to(40), [&](long) { return count(); },
+        [&](long block, const std::string& text) { journal.add(block, text); },
+        [](std::size_t, std::size_t) {}, touch);
+    journal.scan();
+    ASSERT_EQ(journal.size(), 40U);
+    for (long block = 0; block < 40; ++block) EXPECT_EQ(journal.read(block), "40");
+  }
+}
+
+TEST(JobPool, WorksOnNothingWhereOneCannotBePrepared) {
+  for (const int jobs : {1, 3}) {
+    const test::Folder folder;
+    const auto touch = [&](long block) {
+      std::ofstream(folder.file(std::to_string(block)));
+      return std::string();
+    };
+    const auto refuse = [](long block) {
+      if (block == 5) ::usleep(100'000);  // those behind it fail before
+      if (block >= 5) throw UsageError("block " + std::to_string(block));
+    };
+    try {
+      for_blocks(
+          jobs, blocks_to(40), touch, [](long, const std::string&) {},
+          [](std::size_t, std::size_t) {}, refuse);
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const UsageError& error) {
+      EXPECT_STREQ(error.what(), "block 5");
+    }
+    EXPECT_TRUE(folder.is_empty());
+  }
 }
 
 TEST(JobPool, TellsTheFirstFault) {

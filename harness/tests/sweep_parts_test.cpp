@@ -121,6 +121,17 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(files(), 3U);
 }
 
+TEST_F(SweepParts, AJournalWithoutABlockIsNothingToGoOnWith) {
+  sweep(kLanes, "whole.csv");
+  { const Journal begun(at("t.csv.journal"), {{"sweep", "ended while it looked at its lanes"}}); }
+  EXPECT_EQ(sweep(kLanes, "t.csv").status, 1);
+  EXPECT_EQ(text("t.csv"), text("whole.csv"));
+  const auto refused = sweep("four-bar:1 --jobs 2 --vary rods/A0-B0/mass=1:-1:20", "bad.csv");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.errors.find("lane 11 of 20"), std::string::npos) << refused.errors;
+  EXPECT_EQ(files(), 2U);  // nothing of the last
+}
+
 TEST_F(SweepParts, AFinishedTableIsNotMadeAgainByResume) {
   sweep(kLanes, "t.csv");
   const std::string before = text("t.csv");
@@ -217,7 +228,7 @@ TEST_F(SweepParts, APartThatWasCutOrDamagedIsMendedByItsCommand) {
     const auto mended = sweep(command + "--resume --jobs 2", "1");
     EXPECT_EQ(mended.status, 1) << mended.errors;  // for the lanes that cannot be assembled
     EXPECT_EQ(mended.errors.find("note: ") != std::string::npos, is_damaged) << mended.errors;
-    if (is_damaged) EXPECT_NE(mended.errors.find("2 of 3 blocks are there"), std::string::npos);
+    EXPECT_EQ(mended.errors.find("2 of 3 blocks are there") != std::string::npos, is_damaged);
     EXPECT_EQ(sweep(command + "--resume", "1").errors.find("note: "), std::string::npos);
     EXPECT_EQ(merge("1 2").status, 1);
     EXPECT_EQ(text("out.csv"), text("whole.csv"));

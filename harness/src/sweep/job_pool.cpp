@@ -30,6 +30,7 @@ namespace mbs {
 namespace {
 
 constexpr int kShowEvery = 200;  // ms
+constexpr useconds_t kWait = 500;  // us, until the others may have prepared the rest
 
 [[noreturn]] void fail_jobs(const char* what) {
   throw std::runtime_error(fmt::format("--jobs: {}: {}", what, std::strerror(errno)));
@@ -52,22 +53,33 @@ struct Course {
   }
 };
 
-/// Memory of all processes.
+/// Memory of all processes; behind it a flag a block.
 struct Shared {
-  std::atomic<std::size_t> next{0}, kept{0};
+  explicit Shared(std::size_t count) : blocks(count) {}
+  [[nodiscard]] static std::size_t bytes(std::size_t blocks) {
+    return sizeof(Shared) + blocks * sizeof(std::atomic_flag);
+  }
+  /// Whether nobody else has it.
+  [[nodiscard]] bool claim(std::size_t place) {
+    return !is_over && !reinterpret_cast<std::atomic_flag*>(this + 1)[place].test_and_set();
+  }
+
+  std::size_t blocks;
+  std::atomic<std::size_t> next{0}, prepared{0}, kept{0};
+  std::atomic<bool> is_over{false};  // something went wrong
   std::array<Course, kMostJobs> courses{};
   sem_t keeping{};
 };
 
 struct Unmap {
-  void operator()(Shared* shared) const { ::munmap(shared, sizeof(Shared)); }
+  void operator()(Shared* shared) const { ::munmap(shared, Shared::bytes(shared->blocks)); }
 };
 
-std::unique_ptr<Shared, Unmap> create_shared() {
-  void* memory =
-      ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+std::unique_ptr<Shared, Unmap> create_shared(std::size_t blocks) {
+  void* memory = ::mmap(nullptr, Shared::bytes(blocks), PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);  // zero, as flags that are clear
   if (memory == MAP_FAILED) fail_jobs("no memory");
-  std::unique_ptr<Shared, Unmap> shared(new (memory) Shared);
+  std::unique_ptr<Shared, Unmap> shared(new (memory) Shared(blocks));
   if (::sem_init(&shared->keeping, /*pshared=*/1, 1) != 0) fail_jobs("no semaphore");
   return shared;
 }
@@ -134,21 +146,45 @@ class Job {
 void for_blocks(int jobs, std::span<const long> blocks,
                 const std::function<std::string(long)>& work,
                 const std::function<void(long, const std::string&)>& keep,
-                const std::function<void(std::size_t)>& show) {
-  if (jobs == 1 || blocks.size() < 2) {
-    for (std::size_t i = 0; i < blocks.size(); show(++i)) keep(blocks[i], work(blocks[i]));
+                const std::function<void(std::size_t, std::size_t)>& show,
+                const std::function<void(long)>& prepare) {
+  const std::size_t count = blocks.size();
+  if (jobs == 1 || count < 2) {
+    for (std::size_t i = 0; prepare && i < count; show(++i, 0)) prepare(blocks[i]);
+    for (std::size_t i = 0; i < count; show(count, ++i)) keep(blocks[i], work(blocks[i]));
     return;
   }
-  const auto shared = create_shared();
+  const auto shared = create_shared(count);
+  const auto prepare_some = [&](Course& course) {
+    std::vector<std::size_t> mine;
+    for (std::size_t place = 0; !shared->is_over && (place = shared->next++) < count;) {
+      prepare(blocks[course.place = place]);
+      mine.push_back(place);
+      ++shared->prepared;
+    }
+    while (!shared->is_over && shared->prepared < count) ::usleep(kWait);
+    return mine;
+  };
+  const auto take = [&](std::size_t place, Course& course) {
+    const long block = blocks[course.place = place];
+    const std::string result = work(block);
+    const Alone turn(shared->keeping);
+    keep(block, result);
+    ++shared->kept;
+  };
   const auto run = [&](Course& course) {
     using enum Course::End;
     try {
-      for (std::size_t place = 0; (place = shared->next++) < blocks.size();) {
-        const long block = blocks[course.place = place];
-        const std::string result = work(block);
-        const Alone turn(shared->keeping);
-        keep(block, result);
-        ++shared->kept;
+      if (prepare) {
+        std::vector<std::size_t> places = prepare_some(course);
+        // Then what others have not come to, their last first.
+        for (std::size_t place = count; place-- > 0;) places.push_back(place);
+        for (const std::size_t place : places) {
+          if (shared->claim(place)) take(place, course);
+        }
+      }
+      for (std::size_t place = 0; !shared->is_over && (place = shared->next++) < count;) {
+        take(place, course);
       }
       return course.finish(done, "");
     } catch (const UsageError& error) {
@@ -158,16 +194,16 @@ void for_blocks(int jobs, std::span<const long> blocks,
     } catch (const std::exception& error) {
       course.finish(failure, error.what());
     }
-    shared->next = blocks.size();
+    shared->is_over = true;
   };
   std::fflush(nullptr);
   std::vector<std::unique_ptr<Job>> pool;
-  while (pool.size() < std::min(static_cast<std::size_t>(jobs), blocks.size())) {
+  while (pool.size() < std::min(static_cast<std::size_t>(jobs), count)) {
     Course& course = shared->courses[pool.size()];
     pool.push_back(std::make_unique<Job>([&] { run(course); }));
   }
   const Course* first = nullptr;
-  for (std::size_t running = pool.size(); running > 0; show(shared->kept)) {
+  for (std::size_t running = pool.size(); running > 0; show(shared->prepared, shared->kept)) {
     std::vector<pollfd> waited;
     for (const auto& job : pool) waited.push_back({job->handle(), POLLIN, 0});
     if (::poll(waited.data(), waited.size(), kShowEvery) < 0 && errno != EINTR) fail_jobs("no news");

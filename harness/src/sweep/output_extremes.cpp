@@ -7,13 +7,14 @@ namespace mbs {
 
 void OutputExtremes::follow(double t, const State& state) {
   outputs_.follow(t, state);
-  const std::vector<double> values = outputs_.values();
+  values_.resize(outputs_.columns().size());
+  outputs_.values(values_);
   if (columns_.empty()) {
-    for (const double value : values) columns_.push_back({value, value, value});
+    for (const double value : values_) columns_.push_back({value, value, value});
   }
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    columns_[i] = {values[i], std::min(columns_[i].least, values[i]),
-                   std::max(columns_[i].most, values[i])};
+    columns_[i] = {values_[i], std::min(columns_[i].least, values_[i]),
+                   std::max(columns_[i].most, values_[i])};
   }
 }
 

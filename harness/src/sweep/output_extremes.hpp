@@ -23,6 +23,7 @@ class OutputExtremes {
  private:
   OutputValues outputs_;
   std::vector<Extremes> columns_;  // empty before the first state
+  std::vector<double> values_;     // of the present one
 };
 
 }  // namespace mbs

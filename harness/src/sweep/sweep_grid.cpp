@@ -107,10 +107,10 @@ std::vector<double> SweepGrid::values(long lane) const {
 }
 
 Scene SweepGrid::scene(long lane) const {
-  nlohmann::json document = document_;
+  if (varied_.is_null()) varied_ = document_;
   const std::vector<double> changed = values(lane);
-  for (std::size_t i = 0; i < axes_.size(); ++i) document[axes_[i].number] = changed[i];
-  return scene_of(document, name_, Unused::allowed);  // base_ was looked at
+  for (std::size_t i = 0; i < axes_.size(); ++i) varied_[axes_[i].number] = changed[i];
+  return scene_of(varied_, name_, Unused::allowed);  // base_ was looked at
 }
 
 std::string SweepGrid::describe(long lane) const {

@@ -56,6 +56,7 @@ class SweepGrid {
   std::vector<SweepAxis> axes_;
   long lanes_ = 1;  // of the grid without samples, then of all
   long samples_ = 1;
+  mutable nlohmann::json varied_;  // document_ with the values of the lane that was asked for last
 };
 
 }  // namespace mbs
