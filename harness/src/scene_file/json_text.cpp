@@ -144,7 +144,7 @@ std::string path_of_key(const std::string& path, std::string_view key) {
 }
 
 std::string path_of_item(const std::string& path, std::size_t index) {
-  return fmt::format("{}[{}]", path, index);
+  return path + '[' + std::to_string(index) + ']';
 }
 
 }  // namespace mbs
