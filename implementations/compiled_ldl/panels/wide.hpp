@@ -270,11 +270,12 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
   F* z_of = right + from;
   Rows rows = pivot_rows(front, k);
   alignas(64) F block[P * kPanel], l[P][kPanel];
-  if (from > 0 || !kInScalars<F>) {
-    constexpr int kRows = kInScalars<F> ? P : kPanel;
-    scale_rows<kRows>(front, rows.at, rows.stride, from);
+  // Of many panels the time is in what is below the blocks, and scalars are no gain.
+  const bool in_scalars = kInScalars<F> && front.panels <= 2;
+  if (from > 0 || !in_scalars) {
+    scale_rows<kPanel>(front, rows.at, rows.stride, from);
 #pragma GCC unroll 4
-    for (int i = 0; i < kRows; i += L) {
+    for (int i = 0; i < kPanel; i += L) {
       W s[P][1];
 #pragma GCC unroll 8
       for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
@@ -283,14 +284,16 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
       for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
     }
   }
-  bool accepted;
-  if constexpr (kInScalars<F>) {
-    F inverse[P], z[P];
-    accepted = eliminate_triangle<kDefinite>(from > 0 ? block : target,
-                                             from > 0 ? kPanel : front.stride, z_of, l, inverse, z);
-    store_pivots<P>(z_of, vector_of<kPanel>(z));
-    store_inverse<kPanel>(l, factors, factors + kBlock);
-    for (int j = 0; j < P; ++j) factors_[front.inverses + from + j] = inverse[j];
+  bool accepted = true;
+  if (in_scalars) {
+    if constexpr (kInScalars<F>) {
+      F inverse[P], z[P];
+      accepted = eliminate_triangle<kDefinite>(
+          from > 0 ? block : target, from > 0 ? kPanel : front.stride, z_of, l, inverse, z);
+      store_pivots<P>(z_of, vector_of<kPanel>(z));
+      store_inverse<kPanel>(l, factors, factors + kBlock);
+      for (int j = 0; j < P; ++j) factors_[front.inverses + from + j] = inverse[j];
+    }
   } else {
     accepted = eliminate_block<P, kDefinite>(block, factors, factors_.data() + front.inverses + from,
                                              l, z_of);
@@ -432,9 +435,8 @@ void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
   };
   for (int b = k + 1; P == kPanel && b < front.panels; ++b) {
     Rows rows = pivot_rows(front, b);
-    for (int i = 0; i < rows_of(front, b); i += L, rows.at += L) {
-      subtract(rows, right + b * kPanel + i);
-    }
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) subtract(rows, right + b * kPanel + i);
   }
   Rows rows = border_rows(front);
   right += front.panels * kPanel;
@@ -471,9 +473,8 @@ void WideFronts<F>::backward_panel(const Wide& front, int k, F* right) {
   }
   for (int b = front.panels - 1; P == kPanel && b > k; --b) {  // the newest part of x comes last
     rows = pivot_rows(front, b);
-    for (int i = 0; i < rows_of(front, b); i += L, rows.at += L) {
-      add(rows, right + b * kPanel + i);
-    }
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) add(rows, right + b * kPanel + i);
   }
   const Eight z = load<F, kPanel>(right + from) -
                   load<F, kPanel>(factors_.data() + front.inverses + from) * lane_sums<F>(sums);
