@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -103,6 +104,54 @@ Tree best_tree(const Pattern& pattern, int width) {
   waiting.solved.clear();
   Tree late = fastest(waiting, 4 * best.fill);
   return late.fronts.empty() || best.cycles < kLittle * late.cycles ? best : late;
+}
+
+/// How often the nodes of fronts that borders name do not follow each other, by front. `place`: of
+/// each node among the pivots of its front.
+std::vector<int> gaps_in_borders(const Tree& tree, const std::vector<int>& front_of_node,
+                                 const std::vector<int>& place) {
+  std::vector<int> gaps(tree.fronts.size(), 0);
+  for (const TreeFront& front : tree.fronts) {
+    std::vector<std::array<int, 2>> named;  // front, place
+    for (const int node : front.border) named.push_back({front_of_node[node], place[node]});
+    std::sort(named.begin(), named.end());
+    for (std::size_t i = 1; i < named.size(); ++i) {
+      const bool same = named[i][0] == named[i - 1][0];
+      if (same && named[i][1] != named[i - 1][1] + 1) ++gaps[named[i][0]];
+    }
+  }
+  return gaps;
+}
+
+/// Multipliers that no border names go behind the other pivots of their front, where this closes
+/// gaps between those that borders name: updates have fewer and longer strips then. Substitutions
+/// stay where they are.
+void close_gaps(const Pattern& pattern, Tree& tree) {
+  const std::size_t nodes = pattern.points + pattern.borders.size();
+  std::vector<int> front_of_node(nodes), place(nodes), closed_place(nodes);
+  std::vector<bool> is_named(nodes, false);
+  for (const TreeFront& front : tree.fronts) {
+    for (const int node : front.border) is_named[node] = true;
+  }
+  const auto stays = [&](int node) {
+    return node < pattern.points || is_named[node] || pattern.is_substitution(node - pattern.points);
+  };
+  std::vector<std::vector<int>> closed;
+  for (std::size_t k = 0; k < tree.fronts.size(); ++k) {
+    std::vector<int> pivots = tree.fronts[k].pivots;
+    for (int i = 0; i < static_cast<int>(pivots.size()); ++i) {
+      front_of_node[pivots[i]] = static_cast<int>(k);
+      place[pivots[i]] = i;
+    }
+    std::stable_partition(pivots.begin(), pivots.end(), stays);
+    for (int i = 0; i < static_cast<int>(pivots.size()); ++i) closed_place[pivots[i]] = i;
+    closed.push_back(std::move(pivots));
+  }
+  const std::vector<int> before = gaps_in_borders(tree, front_of_node, place);
+  const std::vector<int> after = gaps_in_borders(tree, front_of_node, closed_place);
+  for (std::size_t k = 0; k < tree.fronts.size(); ++k) {
+    if (after[k] < before[k]) tree.fronts[k].pivots = std::move(closed[k]);
+  }
 }
 
 // Points eliminated once and for all.
@@ -362,6 +411,7 @@ Program compile(const Pattern& pattern, int width, const Changing& changing) {
     program.constant_fronts =
         eliminate_points_first(pattern, width, changing, tree, program.inverts_points);
   }
+  if (program.constant_fronts == 0) close_gaps(pattern, tree);
   program.cycles = tree.cycles;
   place_rows(tree, sizes, program);
   place_borders(tree, sizes, program);

@@ -30,17 +30,17 @@ void Stepper<S, F, D>::project_once(S* x, const S* v, const S* given) {
   phases_.enter(Phase::projection);
   std::fill(s.y.begin(), s.y.end(), S(0.0));
   if (s.saddle) {
-    s.constraints.product(x, s.terms.data(), v, given);
-    s.constrain(s.terms.data());
+    s.constrain_rates(x, v, given);
   } else {
     s.constraints.add_projection(x, v, given, -s.h * s.alpha, s.y.data());
   }
   phases_.enter(Phase::solve);
   s.solve();
   phases_.enter(Phase::projection);
-  if (s.saddle) s.take_multipliers(nullptr, S(0.0));
   const S* y = s.y.data();
   for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
+  // Those of y, cleared before, would be narrow stores that vectors of y wait for.
+  if (s.saddle) s.clear_multipliers(x);
 }
 
 /// y = right-hand sides of Eq. (15) at x, with v* or a* in star_.

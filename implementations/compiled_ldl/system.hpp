@@ -54,6 +54,16 @@ class System {
   void product(const S* x);
   /// y −= (Δt²/4) α Φqᵀ t, or the multipliers' rows = −t.
   void constrain(const S* t);
+  /// The multipliers' rows of y = −t of Constraints::product(), in the saddle-point forms.
+  void constrain_rates(const S* x, const S* v, const S* given) {
+    S* const to = y.data();
+    constraints.rates(x, v, given,
+                      [&](int k, const S& rate) { to[constraints.row(k)] = -rate; });
+  }
+  /// The multipliers' rows of x become zero.
+  void clear_multipliers(S* x) const {
+    for (int k = 0; k < constraints.count(); ++k) x[constraints.row(k)] = S(0.0);
+  }
   /// The multipliers' rows of y = −Φ(q), in the saddle-point forms; gradients stay.
   void constrain_values();
   /// λ or ν += factor times the multipliers' rows of y, which become zero.

@@ -15,6 +15,120 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
   }
 }
 
+// Linear rows.
+
+/// The sums of columns `at` … end - 1 of a strip, times x.
+template <typename S, int D>
+inline auto Constraints<S, D>::strip_sums(const S* x, int at, int end) const {
+  typename Short<S, kRows>::Type even = {}, odd = {};
+  const auto term = [&](int column) {
+    return load<S, kRows>(strip_values_.data() + column * kRows) * x[strip_columns_[column]];
+  };
+  for (; at < end; at += 4) {
+    even += term(at);
+    odd += term(at + 1);
+    even += term(at + 2);
+    odd += term(at + 3);
+  }
+  return even + odd;
+}
+
+/// y += the transposed columns times s.
+template <typename S, int D>
+template <typename W>
+inline void Constraints<S, D>::add_strip(const W& s, int at, int end, S* y) const {
+  const auto term = [&](int column) {
+    return load<S, kRows>(strip_values_.data() + column * kRows) * s;
+  };
+  for (; at < end; at += 4) {
+    const int* columns = strip_columns_.data() + at;
+    if constexpr (kRows == 4) {
+      const W sums = lane_sums(term(at), term(at + 1), term(at + 2), term(at + 3));
+#pragma GCC unroll 4
+      for (int i = 0; i < 4; ++i) y[columns[i]] += sums[i];
+    } else {
+      for (int i = 0; i < 4; ++i) {
+        const W products = term(at + i);
+        for (int r = 0; r < kRows; ++r) y[columns[i]] += products[r];
+      }
+    }
+  }
+}
+
+/// then(k, sum) with the coefficients times x of each linear row k.
+template <typename S, int D>
+template <typename Then>
+inline void Constraints<S, D>::linear_sums(const S* x, Then then) const {
+  if constexpr (kRows > 1) {
+    int at = 0;
+    for (const Strip& strip : strips_) {
+      const auto sums = strip_sums(x, at, strip.columns_end);
+#pragma GCC unroll 4
+      for (int i = 0; i < kRows; ++i) then(strip.row + i, sums[i]);
+      at = strip.columns_end;
+    }
+  }
+  for (const int i : loose_) then(first_linear() + i, loose_sum(i, x));
+}
+
+template <typename S, int D>
+inline S Constraints<S, D>::loose_sum(int i, const S* x) const {
+  S sum = S(0.0);
+  for (int t = linear_[i].begin; t < linear_[i].end; ++t) {
+    sum += term_coefficients_[t] * x[term_rows_[t]];
+  }
+  return sum;
+}
+
+template <typename S, int D>
+inline void Constraints<S, D>::add_loose(int i, const S& s, S* y) const {
+  for (int t = linear_[i].begin; t < linear_[i].end; ++t) {
+    y[term_rows_[t]] += s * term_coefficients_[t];
+  }
+}
+
+/// y += Σ factor(k) times linear row k.
+template <typename S, int D>
+template <typename Factor>
+inline void Constraints<S, D>::add_linear_gradients(Factor factor, S* y) const {
+  if constexpr (kRows > 1) {
+    int at = 0;
+    for (const Strip& strip : strips_) {
+      typename Short<S, kRows>::Type s;
+      const int k = strip.row;
+      if constexpr (kRows == 4) {
+        s = decltype(s){factor(k), factor(k + 1), factor(k + 2), factor(k + 3)};
+      } else {
+        for (int i = 0; i < kRows; ++i) s[i] = factor(k + i);
+      }
+      add_strip(s, at, strip.columns_end, y);
+      at = strip.columns_end;
+    }
+  }
+  for (const int i : loose_) add_loose(i, factor(first_linear() + i), y);
+}
+
+/// y += f Φqᵀ (Φq x − given) of linear rows.
+template <typename S, int D>
+inline void Constraints<S, D>::add_linear_projection(const S* x, const S* given, const S& f,
+                                                     S* y) const {
+  if constexpr (kRows > 1) {
+    int at = 0;
+    for (const Strip& strip : strips_) {
+      auto s = strip_sums(x, at, strip.columns_end);
+      if (given != nullptr) s -= load<S, kRows>(given + strip.row);
+      add_strip(s * f, at, strip.columns_end, y);
+      at = strip.columns_end;
+    }
+  }
+  for (const int i : loose_) {
+    const S sum = loose_sum(i, x);
+    add_loose(i, f * (given == nullptr ? sum : sum - given[first_linear() + i]), y);
+  }
+}
+
+// All of them.
+
 template <typename S, int D>
 template <typename Then>
 void Constraints<S, D>::evaluate_with(const S* q, S* phi, Then then) {
@@ -48,13 +162,10 @@ void Constraints<S, D>::evaluate_with(const S* q, S* phi, Then then) {
     then(k, phi[k]);
     find_gradients<D>(quad, a, c, vectors + 2 * D);
   }
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
-    phi[k] = sum - value_[k];
-    then(k, phi[k]);
-    ++k;
-  }
+  linear_sums(q, [&](int i, const S& sum) {
+    phi[i] = sum - value_[i];
+    then(i, phi[i]);
+  });
 }
 
 /// y += Σ factor(k) times the gradient of constraint k, at free points.
@@ -86,10 +197,7 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
     }
     g += kQuad;
   }
-  for (const Terms& terms : linear_) {
-    const S s = factor(k++);
-    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += s * term_coefficients_[i];
-  }
+  add_linear_gradients(factor, y);
 }
 
 template <typename S, int D>
@@ -131,16 +239,15 @@ inline S Constraints<S, D>::quad_rate(int i, const S* x, const S* v) const {
 }
 
 template <typename S, int D>
-void Constraints<S, D>::product(const S* x, S* t, const S* v, const S* given) const {
+template <typename Then>
+void Constraints<S, D>::rates(const S* x, const S* v, const S* given, Then then) const {
+  const auto less_given = [&](int k, const S& rate) {
+    then(k, given == nullptr ? rate : rate - given[k]);
+  };
   int k = 0;
-  for (; k < pairs_.count(); ++k) t[k] = S(2.0) * half_pair_rate(k, x, v);
-  for (int i = 0; i < static_cast<int>(quads_.size()); ++i) t[k++] = quad_rate(i, x, v);
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
-    t[k++] = sum;
-  }
-  for (k = 0; given != nullptr && k < count(); ++k) t[k] -= given[k];
+  for (; k < pairs_.count(); ++k) less_given(k, S(2.0) * half_pair_rate(k, x, v));
+  for (int i = 0; i < static_cast<int>(quads_.size()); ++i) less_given(k++, quad_rate(i, x, v));
+  linear_sums(x, less_given);
 }
 
 template <typename S, int D>
@@ -173,13 +280,7 @@ void Constraints<S, D>::add_projection(const S* x, const S* v, const S* given, c
       for (int j = 0; j < D; ++j) y[quad.points[p].row + j] += s * g[p * D + j];
     }
   }
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
-    const S s = f * (given == nullptr ? sum : sum - given[k]);
-    ++k;
-    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += s * term_coefficients_[i];
-  }
+  add_linear_projection(x, given, f, y);
 }
 
 template <typename S, int D>
@@ -224,12 +325,7 @@ void Constraints<S, D>::values(const S* q, Then then) const {
     if (matrix >= 0) multiply(matrices_.data() + matrix, w, turned, false);
     then(k, dot<D>(u, matrix >= 0 ? turned : w) - value_[k]);
   }
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
-    then(k, sum - value_[k]);
-    ++k;
-  }
+  linear_sums(q, [&](int i, const S& sum) { then(i, sum - value_[i]); });
 }
 
 /// A distance has the numbers u, another quadratic one A and C, a linear one 1.

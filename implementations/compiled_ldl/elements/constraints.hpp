@@ -1,6 +1,9 @@
 // Constraints, Eqs. (7) and (8), and their tables made from the models.
 #pragma once
 
+#include <map>
+
+#include "panels/vectors.hpp"
 #include "scene.hpp"
 
 namespace mbs::compiled_ldl {
@@ -47,7 +50,12 @@ class Constraints {
   /// y −= h Φqᵀ (λ + α φ).
   void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
   /// t = Φq x, with the columns of fixed points; + 2 u̇·B ẇ if there is v, − given if not null.
-  void product(const S* x, S* t, const S* v = nullptr, const S* given = nullptr) const;
+  void product(const S* x, S* t, const S* v = nullptr, const S* given = nullptr) const {
+    rates(x, v, given, [&](int k, const S& rate) { t[k] = rate; });
+  }
+  /// then(k, that t_k).
+  template <typename Then>
+  void rates(const S* x, const S* v, const S* given, Then then) const;
   /// y += f Φqᵀ t with that t, in one sweep.
   void add_projection(const S* x, const S* v, const S* given, const S& f, S* y) const;
   /// t = 2 u̇·B ẇ, which is Φ̇q v.
@@ -80,6 +88,12 @@ class Constraints {
   struct Terms {
     int begin = 0, end = 0;
   };
+  /// Linear rows k …, with the columns that any of them has: of x_1 − x_3 and x_2 − x_3 columns 1,
+  /// 2 and 3, values 1 0, 0 1 and −1 −1. Columns are filled up with zeros to a multiple of four.
+  struct Strip {
+    int row = 0, columns_end = 0;
+  };
+  static constexpr int kRows = std::min(4, kWidest<S>);  // of a strip
   struct RowPlace {
     Place a, b;
   };
@@ -87,12 +101,24 @@ class Constraints {
   void add_quads(std::span<const Model* const> models, const Rows& rows, const Program& program,
                  bool coupled);
   void add_linear(std::span<const Model* const> models, const Rows& rows);
+  void make_strips();
   void find_rows(const Program& program);
   void multiply(const S* matrix, const S* x, S* y, bool transposed) const;
   template <typename Then>
   void evaluate_with(const S* q, S* phi, Then then);
   template <typename Factor>
   void add_gradients(Factor factor, S* y) const;
+  [[nodiscard]] int first_linear() const { return count() - static_cast<int>(linear_.size()); }
+  auto strip_sums(const S* x, int at, int end) const;
+  template <typename W>
+  void add_strip(const W& s, int at, int end, S* y) const;
+  S loose_sum(int i, const S* x) const;
+  void add_loose(int i, const S& s, S* y) const;
+  template <typename Then>
+  void linear_sums(const S* x, Then then) const;
+  template <typename Factor>
+  void add_linear_gradients(Factor factor, S* y) const;
+  void add_linear_projection(const S* x, const S* given, const S& f, S* y) const;
   S half_pair_rate(int k, const S* x, const S* v) const;
   S quad_rate(int i, const S* x, const S* v) const;
   S quad_velocity_term(int i, const S* v) const;
@@ -102,6 +128,10 @@ class Constraints {
   std::vector<int> matrix_of_quad_;  // -1: the identity
   std::vector<Place> places_;
   std::vector<Terms> linear_;
+  std::vector<Strip> strips_;
+  std::vector<int> strip_columns_;
+  Array<S> strip_values_;   // kRows of each column
+  std::vector<int> loose_;  // linear rows that no strip has
   std::vector<int> term_rows_;
   Array<S> term_coefficients_;
   Array<S> matrices_;  // B, D × D row by row
@@ -219,6 +249,37 @@ void Constraints<S, D>::add_linear(std::span<const Model* const> models, const R
     number_.push_back(before + i);
     value_.push_back(
         of_models<S>(models, [&](const Model& m) { return m.linear_constraints()[i].value; }));
+  }
+  make_strips();
+}
+
+template <typename S, int D>
+void Constraints<S, D>::make_strips() {
+  const int rows = static_cast<int>(linear_.size());
+  for (int i = 0; i < rows;) {
+    std::map<int, std::array<S, kRows>> columns;
+    int terms = 0;
+    for (int r = 0; r < kRows && i + r < rows; ++r) {
+      for (int t = linear_[i + r].begin; t < linear_[i + r].end; ++t, ++terms) {
+        const auto column = columns.try_emplace(term_rows_[t]).first;
+        column->second[r] += term_coefficients_[t];
+      }
+    }
+    const auto count_of = static_cast<int>(columns.size());
+    if (kRows == 1 || i + kRows > rows || 3 * count_of > 2 * terms + 8) {
+      loose_.push_back(i++);
+      continue;
+    }
+    for (const auto& [column, values] : columns) {
+      strip_columns_.push_back(column);
+      strip_values_.insert(strip_values_.end(), values.begin(), values.end());
+    }
+    while (strip_columns_.size() % 4 != 0) {
+      strip_columns_.push_back(columns.begin()->first);
+      strip_values_.resize(strip_values_.size() + kRows, S(0.0));
+    }
+    strips_.push_back({count() - rows + i, static_cast<int>(strip_columns_.size())});
+    i += kRows;
   }
 }
 

@@ -18,7 +18,7 @@ class Forces {
 
   /// y += factor times Q of (q, v), without its constant part.
   void add(const S* q, const S* v, const S& factor, S* y);
-  /// Keeps C and K of the last add() for what follows.
+  /// Keeps C and K of the last add() for what follows, until the next add().
   void keep();
   void keep_where(const LaneMask& mask) {
     copy_where(mask, direction_, kept_);
@@ -103,14 +103,16 @@ Forces<S, D>::Forces(std::span<const Model* const> models, const Program& progra
   direction_.resize(spring_.size() * D, S(0.0));
   torsion_directions_.resize(torsion_.size() * 2 * D, S(0.0));
   across_.resize(spring_.size(), S(0.0));
-  keep();
+  kept_ = direction_;
+  kept_across_ = across_;
+  kept_torsions_ = torsion_directions_;
 }
 
 template <typename S, int D>
 void Forces<S, D>::keep() {
-  kept_ = direction_;
-  kept_across_ = across_;
-  kept_torsions_ = torsion_directions_;
+  kept_.swap(direction_);
+  kept_across_.swap(across_);
+  kept_torsions_.swap(torsion_directions_);
 }
 
 template <typename S, int D>

@@ -41,6 +41,8 @@ bool Panels<F>::eliminate(const Run& run, F* y) {
   for (int i = run.begin; i < run.end; ++i) {
     if constexpr (P == 2) {
       accepted &= eliminate_pair<L, kDefinite>(panels_[i], y);
+    } else if constexpr (P > 2 && kInScalars<F>) {
+      accepted &= eliminate_in_scalars<P, L, kDefinite>(panels_[i], y);
     } else {
       accepted &= eliminate_panel<P, L, kDefinite>(panels_[i], y);
     }
@@ -83,6 +85,27 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
   return accepted;
 }
 
+/// The same in scalars.
+template <typename F>
+template <int P, int L, bool kDefinite>
+bool Panels<F>::eliminate_in_scalars(const Panel& panel, F* y) {
+  constexpr int N = lanes_for(P);
+  F* factors = factors_.data() + panel.factors;
+  F l[P][P], inverse[P], z[P];
+  const bool accepted = eliminate_triangle<kDefinite>(matrix() + panel.columns, panel.stride,
+                                                      y + panel.first, l, inverse, z);
+  unrolled<0, P>([&](auto j) { factors[2 * P * N + j] = inverse[j]; });
+  if constexpr (L > 0) reduce_below<P, L>(panel, l, inverse);
+  store_inverse<N>(l, factors, factors + P * N);
+  if constexpr (L == 0) substitute_back(l, z);  // nothing is left for backward()
+  store_first<P>(y + panel.first, vector_of<N>(z));
+  if constexpr (L > 0) {
+    subtract_below<P, L>(panel, z, y);
+    update_border<P, L>(panel);
+  }
+  return accepted;
+}
+
 /// The same for two pivots, in scalars: a vector's load would wait for the element's narrow stores.
 /// Of the factors only l, in its place in M, and D⁻¹ are kept.
 template <typename F>
@@ -113,14 +136,14 @@ bool Panels<F>::eliminate_pair(const Panel& panel, F* y) {
   return accepted;
 }
 
-/// C becomes C L⁻ᵀ, and its rows times D⁻¹ are stored.
+/// C becomes C L⁻ᵀ, and its rows times D⁻¹ are stored. `Column`: of L, a vector or numbers.
 template <typename F>
-template <int P, int L>
-void Panels<F>::reduce_below(const Panel& panel,
-                             const typename Short<F, lanes_for(P)>::Type (&l)[P],
-                             const F (&inverse)[P]) {
+template <int P, int kLanes, typename Column>
+[[gnu::always_inline]] inline void Panels<F>::reduce_below(const Panel& panel,
+                                                           const Column (&l)[P],
+                                                           const F (&inverse)[P]) {
+  constexpr int L = std::min(kLanes, kWidest<F>), N = lanes_for(P);
   using W = typename Short<F, L>::Type;
-  constexpr int N = lanes_for(P);
   F* below = matrix() + panel.columns + P;
   F* rows = factors_.data() + panel.factors + (2 * P + 1) * N;
   for (int i = 0; i < panel.below; i += L) {
@@ -135,6 +158,7 @@ void Panels<F>::reduce_below(const Panel& panel,
 #pragma GCC unroll 8
     for (int j = 0; j < P; ++j) c[j] *= inverse[j];
     store_transposed<F, P, L, N>(c, rows + i * N);
+    if (kLanes <= 4 && kLanes <= L) break;
   }
 }
 
@@ -142,17 +166,26 @@ void Panels<F>::reduce_below(const Panel& panel,
 
 /// y −= C z at the rows below.
 template <typename F>
-template <int P, int L>
-void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
-                               F* y) const {
+template <int P, int L, typename Z>
+[[gnu::always_inline]] inline void Panels<F>::subtract_below(const Panel& panel, const Z& z,
+                                                             F* y) const {
   using W = typename Short<F, L>::Type;
+  constexpr bool kApart = kInScalars<F> && P > 3;  // two sums that do not wait for each other
   const F* below = matrix_.data() + kMargin + panel.columns + P;
   const int* rows = program_.border_rows.data() + panel.rows;
   for (int i = 0; i < panel.below; i += L) {
     const int count = std::min(L, panel.below - i);
-    W sum = load<F, L>(below + i) * z[0];
+    W sum = load<F, L>(below + i) * z[0], other = {};
 #pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
+    for (int j = 1; j < P; ++j) {
+      const W product = load<F, L>(below + j * panel.stride + i) * z[j];
+      if (!kApart || j % 2 == 0) {
+        sum += product;
+      } else {
+        other = j == 1 ? product : other + product;
+      }
+    }
+    if (kApart) sum += other;
     if (L > 4 && i + count <= panel.following) {
       store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - first_lanes<F, L>(sum, count));
     } else {
@@ -160,6 +193,7 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
       store<F, L>(numbers, sum);
       for (int l = 0; l < count; ++l) y[rows[i + l]] -= numbers[l];
     }
+    if (L <= 4) break;  // which all of the border is
   }
 }
 
@@ -186,7 +220,7 @@ void Panels<F>::update_rows(const F* below, int stride, int rows, const F* g, in
 
 template <typename F>
 template <int P, int L>
-void Panels<F>::update_border(const Panel& panel) {
+[[gnu::always_inline]] inline void Panels<F>::update_border(const Panel& panel) {
   if (L == 2 && panel.is_two) return update_two<P>(panel);
   const F* below = matrix() + panel.columns + P;
   const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
@@ -254,11 +288,9 @@ void Panels<F>::forward(const Run& run, F* y) {
       x[0] = L > 0 ? z[0] : z[0] - factors[1] * z[1];
       x[1] = z[1];
     } else {
-      z = load<F, N>(factors) * x[0];
-#pragma GCC unroll 8
-      for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
+      z = times_lower<F, P, N>(factors, x);
       z *= load<F, N>(factors + 2 * P * N);
-      if constexpr (L == 0) z = times_columns<F, P, N>(factors + P * N, z);
+      if constexpr (L == 0) z = times_upper<F, P, N>(factors + P * N, z);
       store_first<P>(x, z);
     }
     if constexpr (L > 0) subtract_below<P, L>(panel, z, y);
@@ -292,7 +324,7 @@ void Panels<F>::backward(const Run& run, F* y) {
       y[panel.first] = x0[0] - transposed[1 - P * N] * x0[1];
       y[panel.first + 1] = x0[1];
     } else {
-      store_first<P>(y + panel.first, times_columns<F, P, N>(transposed, x0));
+      store_first<P>(y + panel.first, times_upper<F, P, N>(transposed, x0));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "panels/strips.hpp"
+#include "panels/triangle.hpp"
 #include "panels/vectors.hpp"
 #include "panels/wide.hpp"
 #include "program.hpp"
@@ -79,6 +80,8 @@ class Panels {
   bool eliminate(const Run& run, F* y);
   template <int P, int L, bool kDefinite>
   bool eliminate_panel(const Panel& panel, F* y);
+  template <int P, int L, bool kDefinite>
+  bool eliminate_in_scalars(const Panel& panel, F* y);
   template <int L, bool kDefinite>
   bool eliminate_pair(const Panel& panel, F* y);
   template <int P, int L>
@@ -91,12 +94,10 @@ class Panels {
   void forward_wide(const Run& run, F* y);
   template <int P>
   void backward_wide(const Run& run, F* y);
-  template <int P, int L>
-  void reduce_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type (&l)[P],
-                    const F (&inverse)[P]);
-  template <int P, int L>
-  void subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
-                      F* y) const;
+  template <int P, int L, typename Column>
+  void reduce_below(const Panel& panel, const Column (&l)[P], const F (&inverse)[P]);
+  template <int P, int L, typename Z>
+  void subtract_below(const Panel& panel, const Z& z, F* y) const;
   template <int P>
   void update_two(const Panel& panel);
   template <int P, int L>

@@ -51,6 +51,12 @@ void Panels<F>::add_panel(const Front& front) {
   panel.factors = next_factors_;
   next_factors_ += lanes_for(front.pivots) * (2 * front.pivots + 1 + round_up(panel.below, 8));
   next_factors_ = round_up(next_factors_, 8);
+  if constexpr (kInScalars<F>) {
+    const int lanes = lanes_for(front.pivots);
+    factors_.resize(next_factors_ + kMargin, F(0));
+    F* factors = factors_.data() + panel.factors;
+    store_ones(front.pivots, lanes, factors, factors + front.pivots * lanes);
+  }
   panel.strips_begin = static_cast<int>(strips_.size());
   add_strips<F>(program_, front, strips_);
   panel.strips_end = static_cast<int>(strips_.size());

@@ -255,6 +255,63 @@ inline typename Short<F, N>::Type times_columns(const F* columns,
   return even + odd;
 }
 
+/// Σ x_j c_j of P columns of a lower triangle, N numbers each; x: in memory. What is zero of columns
+/// in two registers is left out.
+template <typename F, int P, int N>
+inline typename Short<F, N>::Type times_lower(const F* columns, const F* x) {
+  using V = typename Short<F, N>::Type;
+  if constexpr (std::is_same_v<V, Halves>) {
+    Halves even = {}, odd = {};
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      Halves& sum = j % 2 == 0 ? even : odd;
+      const auto take = [&](Halves::Four& of_half, int from) {
+        const auto product = load<F, 4>(columns + j * N + from) * x[j];
+        of_half = j < 2 ? product : of_half + product;
+      };
+      if (j < 4) take(sum.low, 0);
+      if (P > 4) take(sum.high, 4);
+    }
+    return even + odd;
+  } else {
+    V sum = load<F, N>(columns) * x[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < P; ++j) sum += load<F, N>(columns + j * N) * x[j];
+    return sum;
+  }
+}
+/// The same of an upper triangle.
+template <typename F, int P, int N>
+inline typename Short<F, N>::Type times_upper(const F* columns,
+                                              const typename Short<F, N>::Type& x) {
+  if constexpr (std::is_same_v<typename Short<F, N>::Type, Halves>) {
+    Halves even = {}, odd = {};
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      Halves& sum = j % 2 == 0 ? even : odd;
+      const auto take = [&](Halves::Four& of_half, int from) {
+        const auto product = load<F, 4>(columns + j * N + from) * x[j];
+        of_half = j < from + 2 ? product : of_half + product;
+      };
+      take(sum.low, 0);
+      if (j >= 4) take(sum.high, 4);
+    }
+    return even + odd;
+  } else {
+    return times_columns<F, P, N>(columns, x);
+  }
+}
+
+/// The sums over the lanes of four vectors of four numbers.
+template <typename V>
+inline V lane_sums(const V& c0, const V& c1, const V& c2, const V& c3) {
+  const V a = __builtin_shufflevector(c0, c1, 0, 4, 2, 6) +
+              __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
+  const V b = __builtin_shufflevector(c2, c3, 0, 4, 2, 6) +
+              __builtin_shufflevector(c2, c3, 1, 5, 3, 7);
+  return __builtin_shufflevector(a, b, 0, 1, 4, 5) + __builtin_shufflevector(a, b, 2, 3, 6, 7);
+}
+
 /// The sums over the lanes of eight vectors.
 template <typename F, typename V>
 inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
@@ -274,6 +331,9 @@ inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
     }
     sums = __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11) +
            __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15);
+  } else if constexpr (sizeof(V) == 4 * sizeof(F) &&
+                       std::is_same_v<typename Short<F, 8>::Type, Halves>) {
+    sums = {lane_sums(c[0], c[1], c[2], c[3]), lane_sums(c[4], c[5], c[6], c[7])};
   } else {
 #pragma GCC unroll 8
     for (int j = 0; j < 8; ++j) {

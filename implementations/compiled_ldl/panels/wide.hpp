@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "panels/strips.hpp"
+#include "panels/triangle.hpp"
 #include "panels/vectors.hpp"
 #include "program.hpp"
 
@@ -72,9 +73,15 @@ class WideFronts {
   void add_border(const Wide& front, F* y) const;
   template <int P>
   static void store_pivots(F* right, const Eight& x);
+  /// Rows of the k-th eight pivots.
+  static int rows_of(const Wide& front, int k) { return std::min(kPanel, front.pivots - k * kPanel); }
+  template <int kRows>
   void scale_rows(const Wide& front, const F* rows, int stride, int columns);
   template <int P, int R>
   static void take_up(Rows rows, const F* scaled, int columns, W (&s)[P][R]);
+  template <int P, bool kDefinite>
+  static bool eliminate_block(const F* block, F* factors, F* inverses, F (&lower)[P][kPanel],
+                              F* z_of);
   template <int P, bool kDefinite>
   bool eliminate_panel(const Wide& front, const F* matrix, int k, F* right);
   template <int P, int R>
@@ -124,6 +131,12 @@ void WideFronts<F>::add(const Front& front) {
 template <typename F>
 void WideFronts<F>::allocate() {
   factors_.resize(next_ + kPanel, F(0));
+  for (const Wide& front : fronts_) {
+    for (int k = 0; kInScalars<F> && k < front.panels; ++k) {
+      F* factors = factors_of(front, k);
+      store_ones<F>(std::min(kPanel, front.pivots - k * kPanel), kPanel, factors, factors + kBlock);
+    }
+  }
   scaled_.resize(longest_ * kPanel, F(0));
   right_.resize(longest_, F(0));
 }
@@ -189,14 +202,15 @@ bool WideFronts<F>::eliminate(int k, F* matrix, F* y) {
   return accepted;
 }
 
-/// scaled_ = D⁻¹ C of eight rows in the first so many columns.
+/// scaled_ = D⁻¹ C of so many of eight rows, in the first so many columns.
 template <typename F>
+template <int kRows>
 void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int stride, int columns) {
   const F* inverse = factors_.data() + front.inverses;
   F* scaled = scaled_.data();
   for (int j = 0; j < columns; ++j) {
 #pragma GCC unroll 4
-    for (int i = 0; i < kPanel; i += L) {
+    for (int i = 0; i < kRows; i += L) {
       store<F, L>(scaled + j * kPanel + i, load<F, L>(rows + j * stride + i) * inverse[j]);
     }
   }
@@ -221,25 +235,12 @@ template <int P, int R>
   }
 }
 
+/// The columns of a block of pivots become L, M, Mᵀ and D⁻¹; z_of becomes D⁻¹ M z_of.
 template <typename F>
 template <int P, bool kDefinite>
-bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F* right) {
-  const int from = k * kPanel;
-  const F* target = matrix + from * front.stride;
-  F* factors = factors_of(front, k);
-  F* z_of = right + from;
-  Rows rows = pivot_rows(front, k);
-  scale_rows(front, rows.at, rows.stride, from);
-  alignas(64) F block[P * kPanel];
-#pragma GCC unroll 4
-  for (int i = 0; i < kPanel; i += L) {
-    W s[P][1];
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
-    take_up<P, 1>({rows.at + i, rows.stride, 0}, scaled_.data(), from, s);
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
-  }
+[[gnu::always_inline]] inline bool WideFronts<F>::eliminate_block(const F* block, F* factors,
+                                                                  F* inverses, F (&lower)[P][kPanel],
+                                                                  F* z_of) {
   Eight a[P], l[P], m[P];
   F inverse[P];
 #pragma GCC unroll 8
@@ -249,24 +250,64 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
   Eight scale = Eight{}, z = Eight{};
 #pragma GCC unroll 8
   for (int j = 0; j < P; ++j) {
-    store<F, kPanel>(block + j * kPanel, l[j]);
+    store<F, kPanel>(lower[j], l[j]);
     store<F, kPanel>(factors + j * kPanel, m[j]);
     set_number(scale, j, inverse[j]);
     z += m[j] * z_of[j];
   }
   store_transposed<F, P, P, kPanel>(m, factors + kBlock);
-  store<F, kPanel>(factors_.data() + front.inverses + from, scale);
+  store<F, kPanel>(inverses, scale);
   store_pivots<P>(z_of, z * scale);
+  return accepted;
+}
+
+template <typename F>
+template <int P, bool kDefinite>
+bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F* right) {
+  const int from = k * kPanel;
+  const F* target = matrix + from * front.stride;
+  F* factors = factors_of(front, k);
+  F* z_of = right + from;
+  Rows rows = pivot_rows(front, k);
+  alignas(64) F block[P * kPanel], l[P][kPanel];
+  // Of many panels the time is in what is below the blocks, and scalars are no gain.
+  const bool in_scalars = kInScalars<F> && front.panels <= 2;
+  if (from > 0 || !in_scalars) {
+    scale_rows<kPanel>(front, rows.at, rows.stride, from);
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L) {
+      W s[P][1];
+#pragma GCC unroll 8
+      for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
+      take_up<P, 1>({rows.at + i, rows.stride, 0}, scaled_.data(), from, s);
+#pragma GCC unroll 8
+      for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
+    }
+  }
+  bool accepted = true;
+  if (in_scalars) {
+    if constexpr (kInScalars<F>) {
+      F inverse[P], z[P];
+      accepted = eliminate_triangle<kDefinite>(
+          from > 0 ? block : target, from > 0 ? kPanel : front.stride, z_of, l, inverse, z);
+      store_pivots<P>(z_of, vector_of<kPanel>(z));
+      store_inverse<kPanel>(l, factors, factors + kBlock);
+      for (int j = 0; j < P; ++j) factors_[front.inverses + from + j] = inverse[j];
+    }
+  } else {
+    accepted = eliminate_block<P, kDefinite>(block, factors, factors_.data() + front.inverses + from,
+                                             l, z_of);
+  }
   if constexpr (P == kPanel) {
     int b = k + 1;
     for (; kPairs == 2 && L == kPanel && b + 1 < front.panels; b += 2) {
-      finish_rows<P, kPairs>(front.stride, target + b * kPanel, pivot_rows(front, b), from, block,
+      finish_rows<P, kPairs>(front.stride, target + b * kPanel, pivot_rows(front, b), from, l[0],
                              z_of, right + b * kPanel);
     }
     for (; b < front.panels; ++b) {
       rows = pivot_rows(front, b);
-      for (int i = 0; i < kPanel; i += L, rows.at += L) {
-        finish_rows<P, 1>(front.stride, target + b * kPanel + i, rows, from, block, z_of,
+      for (int i = 0; i < rows_of(front, b); i += L, rows.at += L) {
+        finish_rows<P, 1>(front.stride, target + b * kPanel + i, rows, from, l[0], z_of,
                           right + b * kPanel + i);
       }
     }
@@ -275,11 +316,11 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
   F* below = right + front.panels * kPanel;
   int i = 0;
   for (; i + kPairs * L <= front.length; i += kPairs * L, rows.at += kPairs * L) {
-    finish_rows<P, kPairs>(front.stride, target + front.pivots + i, rows, from, block, z_of,
+    finish_rows<P, kPairs>(front.stride, target + front.pivots + i, rows, from, l[0], z_of,
                            below + i);
   }
-  for (; i < front.length; i += L, rows.at += L) {
-    finish_rows<P, 1>(front.stride, target + front.pivots + i, rows, from, block, z_of, below + i);
+  for (; i < front.border; i += L, rows.at += L) {
+    finish_rows<P, 1>(front.stride, target + front.pivots + i, rows, from, l[0], z_of, below + i);
   }
   return accepted;
 }
@@ -329,7 +370,7 @@ void WideFronts<F>::update_border(const Wide& front, F* matrix) {
     const int first = strips_[begin].column;
     for (end = begin; end < front.strips_end && strips_[end].column == first;) ++end;
     for (int k = 0; k < strips_[end - 1].columns; k += kPanel) {
-      scale_rows(front, rows.at + first + k, rows.stride, front.pivots);
+      scale_rows<kPanel>(front, rows.at + first + k, rows.stride, front.pivots);
       for (int i = begin; i < end; ++i) update_columns<kPanel>(front, matrix, strips_[i], k);
     }
   }
@@ -379,7 +420,7 @@ template <typename F>
 template <int P>
 void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
   const int from = k * kPanel;
-  Eight z = times_columns<F, P, kPanel>(factors_of(front, k), load<F, kPanel>(right + from));
+  Eight z = times_lower<F, P, kPanel>(factors_of(front, k), right + from);
   z *= load<F, kPanel>(factors_.data() + front.inverses + from);
   store_pivots<P>(right + from, z);
   const auto subtract = [&](Rows rows, F* y) {
@@ -399,7 +440,7 @@ void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
   }
   Rows rows = border_rows(front);
   right += front.panels * kPanel;
-  for (int i = 0; i < front.length; i += L, rows.at += L) subtract(rows, right + i);
+  for (int i = 0; i < front.border; i += L, rows.at += L) subtract(rows, right + i);
 }
 
 template <typename F>
@@ -427,7 +468,7 @@ void WideFronts<F>::backward_panel(const Wide& front, int k, F* right) {
     for (int j = 0; j < P; ++j) sums[j] += load<F, L>(columns + j * rows.stride) * x_i;
   };
   Rows rows = border_rows(front);
-  for (int i = 0; i < front.length; i += L, rows.at += L) {
+  for (int i = 0; i < front.border; i += L, rows.at += L) {
     add(rows, right + front.panels * kPanel + i);
   }
   for (int b = front.panels - 1; P == kPanel && b > k; --b) {  // the newest part of x comes last
@@ -437,7 +478,7 @@ void WideFronts<F>::backward_panel(const Wide& front, int k, F* right) {
   }
   const Eight z = load<F, kPanel>(right + from) -
                   load<F, kPanel>(factors_.data() + front.inverses + from) * lane_sums<F>(sums);
-  store_pivots<P>(right + from, times_columns<F, P, kPanel>(factors_of(front, k) + kBlock, z));
+  store_pivots<P>(right + from, times_upper<F, P, kPanel>(factors_of(front, k) + kBlock, z));
 }
 
 }  // namespace mbs::compiled_ldl
