@@ -179,6 +179,7 @@ void Judge::add_balance(double excess, double work, long steps) {
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {
+  if (so_far_.twists.empty()) return "";  // there are none
   const auto now = torsions(scene_->model, t, state.q);
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!(now[i].tilt <= bounds_.tilt)) {
