@@ -5,9 +5,14 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "model_math/kinematics.hpp"
+#include "run/constraint_values.hpp"
+#include "run/initial_state.hpp"
 #include "run/stretch.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
@@ -29,6 +34,26 @@ TEST(Judge, RefusesANanAnywhere) {
         EXPECT_EQ(Judge(scene, initial, 0.0).judge(0.0, state), "the state is not finite");
       }
     }
+  }
+}
+
+TEST(Judge, EvaluatesConstraintsFromItsListAsTheModelSays) {
+  for (const std::string name :
+       {"four-bar:3", "loop:6", MBS_ROOT "/harness/scenes/examples/spatial_pendulum.json",
+        MBS_ROOT "/harness/scenes/examples/driven_crank.json",
+        MBS_ROOT "/harness/scenes/problems/spatial_slider_crank.json"}) {
+    const Scene scene = load_scene(name);
+    const Model& model = scene.model;
+    std::vector<double> q = initial_state(model).q;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += 0.1 * std::sin(1.0 + 2.0 * i);
+    std::vector<double> expected(static_cast<std::size_t>(model.constraints())), phi = expected;
+    evaluate_constraints(model, 0.3, q, expected);
+    ConstraintValues(model).evaluate(0.3, q, phi);
+    for (std::size_t k = 0; k < phi.size(); ++k) {
+      EXPECT_NEAR(phi[k], expected[k], 1e-14) << name << " " << k;
+    }
+    q.push_back(0.0);
+    EXPECT_THROW(ConstraintValues(model).evaluate(0.3, q, phi), std::invalid_argument) << name;
   }
 }
 

@@ -83,6 +83,7 @@ double judged_length(const Model& model) {
 
 Judge::Judge(const Scene& scene, const State& initial, double start)
     : scene_(&scene),
+      constraints_(scene.model),
       phi_(static_cast<std::size_t>(scene.model.constraints())),
       phi_scale_(constraint_scales(scene.model)),
       conservative_(is_conservative(scene.model)),
@@ -115,7 +116,7 @@ std::string Judge::judge(double t, const State& state) {
     spoil();
     return "the state is not finite";
   }
-  evaluate_constraints(scene_->model, t, state.q, phi_);
+  constraints_.evaluate(t, state.q, phi_);
   if (!is_finite(phi_)) {  // huge coordinates
     spoil();
     return "the state is too large to be judged";
@@ -178,6 +179,7 @@ void Judge::add_balance(double excess, double work, long steps) {
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {
+  if (so_far_.twists.empty()) return "";  // there are none
   const auto now = torsions(scene_->model, t, state.q);
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!(now[i].tilt <= bounds_.tilt)) {
@@ -212,10 +214,11 @@ std::string Judge::judge_energy(double t, const State& state) {
     conservative_ = false;
   }
   if (carriage_) move_with_feet(t, state);
-  const double kinetic = kinetic_energy(scene_->model, velocity(state));
+  // The shorter sum first, so that the processor begins the other one while it waits for it.
   const double potential = !conservative_ ? 0.0
                            : carriage_    ? potential_energy(scene_->model, 0.0, moved_q_)
                                           : potential_energy(scene_->model, t, state.q);
+  const double kinetic = kinetic_energy(scene_->model, velocity(state));
   if (!std::isfinite(kinetic) || !std::isfinite(potential)) {
     spoil();
     return "the state is too large to be judged";

@@ -7,6 +7,7 @@
 #include "exact/four_bar_exact.hpp"
 #include "mbs/simulation.hpp"
 #include "model_math/even_carriage.hpp"
+#include "run/constraint_values.hpp"
 #include "run/part_energies.hpp"
 #include "scene/scene.hpp"
 
@@ -67,6 +68,8 @@ class Judge {
   /// judged_length() of the scene, m.
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool knows_exact_motion() const { return exact_.has_value(); }
+  /// Whether energy is conserved, and energy_drift_max() known.
+  [[nodiscard]] bool judges_energy() const { return conservative_; }
 
   /// The worst so far and what the next state is judged by, without the rest of the judge.
   struct Figures {
@@ -116,6 +119,7 @@ class Judge {
   const Scene* scene_;  // a pointer, so that judges can be copied
   RunBounds bounds_;
   std::optional<FourBarExact> exact_;
+  ConstraintValues constraints_;
   std::vector<double> phi_;
   std::vector<double> phi_scale_;
   bool conservative_;

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "model_math/kinematics.hpp"
 #include "printable.hpp"
 #include "run/rounding.hpp"
 #include "usage_error.hpp"
@@ -190,8 +191,7 @@ void JudgedRun::look(const State& present) {
 /// Whether the step was harder than most: near a singular position Newton needs more passes.
 bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
   return outcome.status == StepStatus::pass_limit ||
-         static_cast<double>(outcome.passes) * static_cast<double>(summary_.steps) >
-             1.5 * static_cast<double>(summary_.passes) + static_cast<double>(summary_.steps);
+         2 * outcome.passes * summary_.steps > 3 * summary_.passes + 2 * summary_.steps;
 }
 
 /// Steps until the next look: as many as leave no time to jump there and back, half the judged
@@ -212,13 +212,14 @@ long JudgedRun::looked_after(const State& present) const {
 /// About every 256 steps, and by one in four of those that are judged: it takes as long as all
 /// else.
 void JudgedRun::balance_energy(const Sample& sample) {
-  const long every = std::clamp(256L / interval_, 1L, 4L);
   const long step = sample.step;
-  if (judge_.energy_drift_max()) {  // as long as it is carried along evenly
+  if (judge_.judges_energy()) {  // as long as it is carried along evenly
     balanced_ = step;
     return;
   }
-  if (!balance_ || (judgements_++ % every != every / 2 && step != steps_)) return;
+  if (!balance_) return;
+  const long every = std::clamp(256L / interval_, 1L, 4L);
+  if (judgements_++ % every != every / 2 && step != steps_) return;
   const auto [excess, work] =
       balance_->over(sample.before, sample.after, time(step), settings_.step.step);
   judge_.add_balance(excess, work, step - balanced_);
