@@ -16,7 +16,7 @@ from analysis.core.timing import Ranking, Ratio
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, merge, need_alike
-from study.tools.paper import tables
+from study.tools.paper import numbers, tables
 
 ONE = Ratio(1.0, 1.0, 1.0)
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
@@ -109,16 +109,16 @@ def test_what_days_add_is_in_a_verdict():
 
 
 def test_gains_are_compared_on_the_same_scenes(monkeypatch):
-    rows = pandas.DataFrame([(ANCHOR, "chain:3", 0.5), (ANCHOR, "chain:9", 0.9), (tables.SCALAR, "chain:3", 0.6), (tables.BLOCKS, "chain:3", 0.4),
-                             (tables.BLOCKS, "chain:8", 0.1)], columns=["implementation", "scene", "step_us"]).assign(scheme="penalty", status="ok")
+    rows = pandas.DataFrame([(ANCHOR, "chain:3", 0.5), (ANCHOR, "chain:9", 0.9), (numbers.SCALAR, "chain:3", 0.6), (numbers.BLOCKS, "chain:3", 0.4),
+                             (numbers.BLOCKS, "chain:8", 0.1)], columns=["implementation", "scene", "step_us"]).assign(scheme="penalty", status="ok")
     monkeypatch.setattr(machine, "table", lambda folder, *_: rows if folder.name == "second" else rows.assign(step_us=1.0))
     sets = [SimpleNamespace(folder=Path(name)) for name in ("first", "second")]
     found = machine.beside(sets)
-    assert [*found] == [tables.BLOCKS, ANCHOR, tables.SCALAR]
-    assert found[tables.SCALAR][0] == 1 and found[tables.SCALAR][1:] == ([1.0, pytest.approx(0.6)], [1.0, pytest.approx(0.5)])
+    assert [*found] == [numbers.BLOCKS, ANCHOR, numbers.SCALAR]
+    assert found[numbers.SCALAR][0] == 1 and found[numbers.SCALAR][1:] == ([1.0, pytest.approx(0.6)], [1.0, pytest.approx(0.5)])
     assert found[ANCHOR] == (2, [1.0, pytest.approx(0.45**0.5)], [1.0, pytest.approx(0.45**0.5)])
     monkeypatch.setattr(tables, "_machine", lambda one: {})
-    monkeypatch.setattr(tables, "GAINED", (tables.SCALAR, ANCHOR, tables.BLOCKS))
+    monkeypatch.setattr(tables, "GAINED", (numbers.SCALAR, ANCHOR, numbers.BLOCKS))
     said = tables.machines(SimpleNamespace(compared=sets))
     assert [line.split("&")[-1].split()[0] for line in said.splitlines() if "a step with" in line] == ["0.6", "0.5", "0.4"]
 

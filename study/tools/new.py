@@ -2,14 +2,10 @@
 import re
 import shutil
 
-import jinja2
-
 from analysis.core.files import ROOT, StudyError, write_text
 from study.core.options import Parser
 
-SKELETON = jinja2.Environment(  # with marks that C++ does not have
-    loader=jinja2.FileSystemLoader(ROOT / "study" / "tools" / "skeleton"), undefined=jinja2.StrictUndefined, variable_start_string="@",
-    variable_end_string="@", block_start_string="@%", block_end_string="%@", comment_start_string="@#", trim_blocks=True, keep_trailing_newline=True)
+SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const
@@ -19,14 +15,28 @@ public register reinterpret_cast requires return short signed sizeof static stat
 throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
 TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
          "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
-LIBRARIES = ("none", "eigen", "blas")  # that the skeleton knows
+EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
+COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
+IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
+ILAVER = '\nextern "C" void ilaver_(int* major, int* minor, int* patch);\n'
+LAPACK = """std::string lapack_version() {
+  int major = 0, minor = 0, patch = 0;
+  ilaver_(&major, &minor, &patch);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+"""
+# (name, licence, version as C++, include, how it takes what is stored, what the version needs outside of and inside namespaces)
+LIBRARIES = {"none": ("none", "", '""', "", "", "", ""),
+             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE, "", ""),
+             "blas": ("LAPACK", "BSD-3-Clause", "lapack_version()", "", COLUMNS.format("LAPACK"), ILAVER, LAPACK)}
 
 
 def new(arguments):
     parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, and has empty "
                     "functions to fill in: predict, constraints, Jacobian, residual, tangent, factorize, solve, correct, project, the step.")
     parser.add_argument("name", metavar="NAME", help="its folder: lower case, digits, _")
-    parser.add_argument("--library", default="none", choices=LIBRARIES, help="what it links (none)")
+    parser.add_argument("--library", default="none", choices=list(LIBRARIES), help="what it links (none)")
     options = parser.parse_args(arguments)
     folder = ROOT / "implementations" / options.name
     if not NAME.fullmatch(options.name):
@@ -36,8 +46,12 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        for name in SKELETON.list_templates():
-            write_text(folder / name, SKELETON.get_template(name).render(name=options.name, library=options.library))
+        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@", "@ILAVER@", "@LAPACK@"),
+                          (options.name, *LIBRARIES[options.library])))
+        for path in sorted(SKELETON.iterdir()):
+            stem, _, only = path.name.partition("@")
+            if only in ("", options.library):
+                write_text(folder / stem, re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8")))
         before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
         write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:

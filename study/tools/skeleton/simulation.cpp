@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace mbs::@name@ {
+namespace mbs::@NAME@ {
 
 constexpr std::size_t kMostEntries = (std::size_t{1} << 31) / sizeof(double);
 
@@ -64,4 +64,4 @@ void Stepper::correct(const std::vector<double>& /*delta*/) {}
 
 void Stepper::project() {}
 
-}  // namespace mbs::@name@
+}  // namespace mbs::@NAME@

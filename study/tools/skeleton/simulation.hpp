@@ -1,14 +1,11 @@
 // One simulation of one model. Fill in what is marked TODO; paper/README.md has the equations.
 #pragma once
 
-@% if library == "eigen" %@
-#include <Eigen/Cholesky>
-@% endif %@
-#include <vector>
+@INCLUDE@#include <vector>
 
 #include "mbs/simulation.hpp"
 
-namespace mbs::@name@ {
+namespace mbs::@NAME@ {
 
 class Stepper final : public Simulation {
  public:
@@ -36,17 +33,11 @@ class Stepper final : public Simulation {
   StepSettings settings_;
   State state_;  // from predict() on, q', v', a'
 
-  // Row by row: entry (i, j) of a matrix with n columns is at i * n + j. Store them as you like.
-@% if library == "eigen" %@
-  // The lower half of T by rows is its upper half by columns, the default of Eigen.
-  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing.
-@% elif library == "blas" %@
-  // The lower half of T by rows is its upper half by columns, the default of LAPACK.
-@% endif %@
+  // Row by row: entry (i, j) of a matrix with n columns is at i * n + j. Store them as you like.@STORAGE@
   std::vector<double> Phi_;    // m
   std::vector<double> Phi_q_;  // m x n
   std::vector<double> f_;      // n
   std::vector<double> T_;      // n x n; the ladder looks at its lower half
 };
 
-}  // namespace mbs::@name@
+}  // namespace mbs::@NAME@
