@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "panels/block.hpp"
 #include "panels/vectors.hpp"
 #include "program.hpp"
 #include "scalar.hpp"
@@ -97,7 +98,7 @@ void Fronts<F>::factorize(const Front& front, F* y) {
 }
 
 /// Eliminates pivots j and j + 1 from the columns before `end` and from the pivots' right-hand
-/// side, as decompose() of panels/vectors.hpp does.
+/// side, as decompose() of panels/block.hpp does.
 template <typename F>
 void Fronts<F>::pivot_columns(const Front& front, F* columns, int j, int end, F* y) {
   F* one = columns + j * front.stride;

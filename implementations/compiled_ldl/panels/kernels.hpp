@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "panels/block.hpp"
 #include "panels/panels.hpp"
 
 namespace mbs::compiled_ldl {

@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "panels/block.hpp"
 #include "panels/vectors.hpp"
 
 namespace mbs::compiled_ldl {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "panels/block.hpp"
 #include "panels/strips.hpp"
 #include "panels/triangle.hpp"
 #include "panels/vectors.hpp"

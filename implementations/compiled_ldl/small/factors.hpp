@@ -1,6 +1,7 @@
 // Small scenes: L D Lᵀ of the whole matrix in registers, solved for a right-hand side on the way.
 #pragma once
 
+#include "panels/block.hpp"
 #include "panels/vectors.hpp"
 #include "small/rows.hpp"
 
@@ -50,7 +51,7 @@ inline typename SmallFactors<N>::Pair SmallFactors<N>::next_pair(const Row (&a)[
           eliminated(a[k + 3].v[next][n + 1], g * g, gb * gb)};
 }
 
-/// Two pivots p, w with c between them at a time, as decompose() of panels/vectors.hpp does, but
+/// Two pivots p, w with c between them at a time, as decompose() of panels/block.hpp does, but
 /// with b = p a' for the column a' = a_{k+1} − (c/p) a_k, which needs no division and is as exact:
 /// what the pair subtracts is a_k a_kᵀ/p + b bᵀ/(p det), so that of one pair to the next only 1/det
 /// is waited for. Row k of M is e_k less the multiples of those before it that L
