@@ -1,6 +1,7 @@
 # A rule to apply by hand: at most four cases in each form of the step, in two numbers that `mbs describe` prints.
 # A form's mechanisms are parted at a limit of one number, each part once more at a limit of the other. The limits are those that cost least by
-# the times that the rule of rule.py predicts for all mechanisms: measured ones of few that fill much would leave them to chance.
+# the times that the rule of rule.py predicts for all mechanisms that were timed in the form: measured ones of few that fill much would leave
+# them to chance.
 from itertools import permutations
 
 import numpy

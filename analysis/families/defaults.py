@@ -3,8 +3,7 @@
 from collections import Counter, namedtuple
 
 import numpy
-
-from analysis.families.rule import shape
+import pandas
 
 DENSE, KLU, UMFPACK = "armadillo_dense/potrf", "csc_klu/refactor", "csc_umfpack/symmetric"
 MODELICA, JULIA = "github.com/OpenModelica/OpenModelica", "github.com/SciML/LinearSolve.jl"
@@ -37,33 +36,18 @@ RULES = (
          lambda n, fill: CHOLMOD if n > 900 else KLU if fill <= 0.4 else SUPERNODAL))
 
 
-def table(scenes, winners, rules=RULES):
-    """A row a rule, from the rows of scenes and winners: time of what it chooses over that of the fastest library, on all
-    mechanisms where that is known. Who was only looked at, there or on a smaller machine, has a rough time; the row says on how many."""
-    rows = {(row["scene"], row["implementation"]): row for row in scenes}
-    known = {row["scene"]: row["winner"] for row in winners if row["layer"] == "libraries" and row.get("winner")}
-    told = _told(rows, known)
+def table(data, records, rules=RULES):
+    """A row a rule, from the losses of rule.py in the paper's form: time of what it chooses over that of the fastest library, on all
+    mechanisms where that is known; on some by a first look alone, there or on a smaller machine. records: by form, scene and contender."""
+    losses, known_by = (one.get("penalty", pandas.DataFrame()) for one in (data.losses, data.known_by))
     for rule in rules:
-        chosen = {scene: rule.choose(rows[scene, best]["variables"], rows[scene, best]["fill"] / 100) for scene, best in known.items()}
-        found = {scene: told[scene, name] for scene, name in chosen.items() if (scene, name) in told}
-        worst, where = max(found.values(), key=lambda one: one[0], default=(None, {}))
+        chosen = {scene: rule.choose(data.features.n[scene], data.features.fill[scene] / 100) for scene in losses.index}
+        by = {scene: known_by[name][scene] for scene, name in chosen.items() if name in losses and known_by[name][scene] not in ("", "failed")}
+        ratios = {scene: 1 + losses[chosen[scene]][scene] for scene in by}
+        where, counts = max(ratios, key=ratios.get, default=""), Counter(by.values())
         yield {
-            "rule": rule.name, "source": rule.source, "chooses": rule.chooses, "scenes": len(known), "timed": len(found),
-            "rough": sum(row["status"] == "slower" for _, row in found.values()),
-            "smaller": sum(row["scene"] != scene for scene, (_, row) in found.items()), "worst": worst, "where": where.get("scene", ""),
-            "chosen": ", ".join(f"{name} on {count}" for name, count in Counter(chosen.values()).most_common()), "record": where.get("record", ""),
-            "mean": float(numpy.exp(numpy.mean(numpy.log([ratio for ratio, _ in found.values()])))) if found else None}
-
-
-def _told(rows, known):
-    """{(scene, contender): (time over that of the fastest library, the row that tells it)}. Who had fallen far behind was not asked
-    again, or did not finish the look: it loses at least as much as on the next smaller machine of the shape."""
-    found, last = {}, {}
-    for (scene, name), row in sorted(rows.items(), key=lambda one: one[1]["variables"]):
-        at, best = (shape(scene), name), rows.get((scene, known.get(scene)), {})
-        ratios = {"ok": row.get("to_rival"), "slower": (row.get("look_us") or numpy.nan) / (best.get("look_us") or numpy.nan)}
-        if (ratio := ratios.get(row["status"]) or 0) > 0:
-            last[at] = found[scene, name] = ratio, row
-        elif row["status"] in ("excluded", "slower") and at in last:
-            found[scene, name] = last[at]
-    return found
+            "rule": rule.name, "source": rule.source, "chooses": rule.chooses, "scenes": len(losses), "timed": len(by),
+            "rough": counts["look"] + counts["smaller"], "smaller": counts["smaller"], "worst": ratios.get(where), "where": where,
+            "chosen": ", ".join(f"{name} on {count}" for name, count in Counter(chosen.values()).most_common()),
+            "mean": float(numpy.exp(numpy.mean(numpy.log([*ratios.values()])))) if by else None,
+            "record": records["penalty", where, chosen[where]] if by else ""}

@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy
 import pandas
 
-from analysis.families import by_hand
+from analysis.families import by_hand, defaults
 from analysis.families.times import FEATURES, PASSES, TERMS, as_penalty, model, predicted
 
 CANDIDATES = 3  # at most, in each form
@@ -31,17 +31,18 @@ NEAREST = ("n", "per_column", "flops", "tangent")  # what `mbs describe` takes d
 
 
 def judged(tables, registry):
-    """{"steps", "held", "alone", "by_hand"}: tables of the rule; without rows where there are too few families."""
+    """{"defaults", "steps", "held", "alone", "by_hand"}: tables of the rule; but for the first without rows where there are too few families."""
     data = _Data(tables, registry)
+    rows = {"defaults": defaults.table(data, tables["scenes"].set_index(["scheme", "scene", "implementation"]).record)}
     if len(set(data.family.values())) < FAMILIES:
-        return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
+        return {name: pandas.DataFrame(rows.get(name)) for name in ("defaults", "steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     data.losses = {scheme: losses for scheme, losses in data.losses.items() if all(rest.candidates[scheme] for rest in rests.values())}
     ratios = pandas.DataFrame([row for family, rest in rests.items() for row in _ratios(data, family, rest)],
                               columns=["family", "scheme", "implementation", "ratio"])
     whole = _Rule(data)
-    rows = {"steps": _steps(data, whole, ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
-            "by_hand": by_hand.table(data, rests, whole, WORTH)}
+    rows |= {"steps": _steps(data, whole, ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
+             "by_hand": by_hand.table(data, rests, whole, WORTH)}
     return {name: pandas.DataFrame(found) for name, found in rows.items()}
 
 

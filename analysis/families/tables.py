@@ -8,7 +8,6 @@ from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.controls import controls_in
 from analysis.core.schema import conform, of_part
-from analysis.families import defaults
 from analysis.families.rule import judged
 
 SCHEMES = ("penalty", "saddle-point")  # the two forms of the step; roles of their records begin with them
@@ -39,10 +38,7 @@ def build(records, view):
                   | {"record": record.name} for scene, record in about.items()]
     tables = {name: conform(pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place)))), schema[name], f"families/{name}.csv")
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
-    fills = tables["mechanisms"][["scene", "fill"]].dropna()
-    first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
     return tables | judged(tables, registry) | {
-        "defaults": pandas.DataFrame(defaults.table(first["scenes"], first["winners"])),
         "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])), "orderings": orderings(about),
         "controls": pandas.DataFrame(twins)}
 

@@ -326,45 +326,36 @@ def test_hybrid_is_held_against_those_it_replaces_on_the_look_where_one_was_not_
     assert found["hybrid_dense, up to n = 22, beside eigen_dense/llt"][1] is True
 
 
-def chosen(scene, implementation, status="ok", variables=40, fill=19.0, **more):
-    return {"scene": scene, "implementation": implementation, "variables": variables, "fill": fill, "status": status,
-            "record": f"{scene}/{implementation}"} | more
-
-
-def won(scene, winner, step_us, layer="libraries"):
-    return {"scene": scene, "layer": layer, "winner": winner, "step_us": step_us}
+def followed(rows, *choices):
+    """Rows of rules with these choices. rows: {(mechanism, library): (loss, what it is known by)}; n is 20, 40, ..., fill 19 %."""
+    found = pandas.DataFrame(rows.values(), pandas.MultiIndex.from_tuples(rows), ["loss", "by"])
+    losses, known_by = found.loss.unstack(), found.by.unstack(fill_value="")
+    features = pandas.DataFrame({"n": 20.0 * numpy.arange(1, len(losses) + 1), "fill": 19.0}, losses.index)
+    data = SimpleNamespace(losses={"penalty": losses}, known_by={"penalty": known_by}, features=features)
+    return [*defaults.table(data, {("penalty", *at): "/".join(at) for at in rows}, [defaults.Rule("R", "S", "", choose) for choose in choices])]
 
 
 def test_a_default_is_held_against_the_fastest_library_where_both_have_times():
-    scenes = [chosen("a", "fast", to_rival=1.0), chosen("a", "slow", to_rival=2.0), chosen("b", "fast", to_rival=1.0, look_us=2.0),
-              chosen("b", "slow", "slower", step_us=16.0, look_us=16.0), chosen("c", "fast", to_rival=1.0), chosen("c", "slow", "disagrees"),
-              chosen("d", "slow", "ok", step_us=1.0)]
-    winners = [won("a", "fast", 1.0), won("b", "fast", 3.0), won("c", "fast", 1.0), won("d", "", None), won("d", "slow", 1.0, "all")]
-    rules = (defaults.Rule("R", "S", "slow", lambda n, fill: "slow"), defaults.Rule("Q", "S", "", lambda n, fill: "fast" if fill == 0.19 else "slow"))
-    always, never = defaults.table(scenes, winners, rules)
-    assert (always["scenes"], always["timed"], always["rough"], always["chosen"]) == (3, 2, 1, "slow on 3")
+    rows = {(scene, "fast"): (0.0, "turns") for scene in "abcd"}
+    rows |= {("a", "slow"): (1.0, "turns"), ("b", "slow"): (7.0, "look"), ("c", "slow"): (3.0, "failed")}
+    always, never = followed(rows, lambda n, fill: "slow", lambda n, fill: "fast" if fill == 0.19 else "slow")
+    assert (always["scenes"], always["timed"], always["rough"], always["smaller"], always["chosen"]) == (4, 2, 1, 0, "slow on 4")
     assert (always["mean"], always["worst"], always["where"], always["record"]) == (pytest.approx(4), 8.0, "b", "b/slow")
-    assert (never["mean"], never["worst"], never["timed"], never["rough"]) == (1.0, 1.0, 3, 0)
+    assert (never["mean"], never["worst"], never["timed"], never["rough"]) == (1.0, 1.0, 4, 0)
 
 
-def test_who_was_not_asked_again_loses_at_least_as_much_as_on_the_next_smaller_machine():
-    scenes = [chosen(f"{family}:{size}", "fast", variables=size, to_rival=1.0, look_us=2.0) for family in ("a", "b") for size in (10, 20, 40)]
-    scenes += [chosen("a:40", "slow", "excluded", 40), chosen("a:10", "slow", "slower", 10, look_us=12.0),
-               chosen("a:20", "slow", "slower", 20, look_us=20.0), chosen("b:10", "slow", "ok", 10, to_rival=2.0),
-               chosen("b:20", "slow", "slower", 20), chosen("b:40", "slow", "dropped", 40)]
-    winners = [won(row["scene"], "fast", 1.0) for row in scenes[:6]]
-    [row] = defaults.table(scenes, winners, [defaults.Rule("R", "S", "", lambda n, fill: "fast" if n == 20 else "slow")])
-    assert (row["scenes"], row["timed"], row["rough"], row["smaller"], row["worst"]) == (6, 5, 2, 1, 10.0)
-    assert (row["where"], row["record"], row["mean"]) == ("a:20", "a:20/slow", pytest.approx(120 ** (1 / 5)))
-    [row] = defaults.table(scenes, winners, [defaults.Rule("R", "S", "", lambda n, fill: "slow")])
-    assert (row["timed"], row["rough"], row["smaller"]) == (5, 3, 2)  # who did not finish the look at b:20 has the time of b:10
+def test_what_a_smaller_machine_tells_of_a_default_is_said_to_be_at_least_so_much():
+    rows = {("a", "fast"): (0.0, "turns"), ("b", "fast"): (0.0, "turns"), ("a", "slow"): (3.0, "look"), ("b", "slow"): (8.0, "smaller")}
+    row, by_size = followed(rows, lambda n, fill: "slow", lambda n, fill: "fast" if n == 40 else "slow")
+    assert (row["timed"], row["rough"], row["smaller"], row["mean"], row["record"]) == (2, 2, 1, pytest.approx(6), "b/slow")
+    assert (by_size["rough"], by_size["smaller"], by_size["worst"], by_size["mean"]) == (1, 0, 4.0, pytest.approx(2))
     [said] = sentences._defaults(pandas.DataFrame([row]))
-    assert "R (at least " in said["text"] and "R (about " in sentences._defaults(pandas.DataFrame([row | {"smaller": 0}]))[0]["text"]
+    assert "R (at least " in said["text"] and "R (about " in sentences._defaults(pandas.DataFrame([by_size]))[0]["text"]
 
 
 def test_a_default_without_any_time_has_no_loss():
-    row, *_ = defaults.table([chosen("a", "fast", to_rival=1.0)], [won("a", "fast", 1.0)])
-    assert (row["timed"], row["mean"], row["where"]) == (0, None, "")
+    [row] = followed({("a", "fast"): (0.0, "turns")}, lambda n, fill: "nobody")
+    assert (row["timed"], row["mean"], row["worst"], row["where"], row["record"]) == (0, None, None, "", "")
 
 
 @pytest.mark.parametrize("rule, variables, fill, expected", [
