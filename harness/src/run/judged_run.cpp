@@ -49,7 +49,8 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
       local_errors_(scene, judge_.length(), watch_.passes_on()),
-      adds_local_errors_(watch_.freedoms() > 0) {}
+      adds_local_errors_(watch_.freedoms() > 0),
+      is_driven_(!scene.model.driven_points().empty() || !scene.model.driven_values().empty()) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
@@ -160,6 +161,7 @@ void JudgedRun::judge(Sample& sample) {
   if (is_over_) return;
   if (adds_local_errors_) add_local_errors(sample);
   balance_energy(sample);
+  ++judgements_;
   good_.step = step;
   std::swap(good_.state, sample.after);
   good_.figures = judge_.figures();
@@ -209,17 +211,20 @@ long JudgedRun::looked_after(const State& present) const {
   return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
 }
 
-/// About every 256 steps, and by one in four of those that are judged: it takes as long as all
+/// About every 256 steps, and one in four of those that are judged: for what takes as long as all
 /// else.
+bool JudgedRun::is_in_turn(long step) const {
+  const long every = std::clamp(256L / interval_, 1L, 4L);
+  return judgements_ % every == every / 2 || step == steps_;
+}
+
 void JudgedRun::balance_energy(const Sample& sample) {
   const long step = sample.step;
   if (judge_.judges_energy()) {  // as long as it is carried along evenly
     balanced_ = step;
     return;
   }
-  if (!balance_) return;
-  const long every = std::clamp(256L / interval_, 1L, 4L);
-  if (judgements_++ % every != every / 2 && step != steps_) return;
+  if (!balance_ || !is_in_turn(step)) return;
   const auto [excess, work] =
       balance_->over(sample.before, sample.after, time(step), settings_.step.step);
   judge_.add_balance(excess, work, step - balanced_);
@@ -232,12 +237,18 @@ void JudgedRun::add_local_errors(const Sample& sample) {
   const double step = settings_.step.step;
   const std::vector<double>& v = judge_.velocity(sample.after);
   off_.resize(v.size());
-  if (local_half_) {
+  if (has_high_order(settings_.step.scheme)) {
     off_ = local_half_->error(sample.before, sample.after);
   } else {  // the trapezoidal rule
     for (std::size_t i = 0; i < off_.size(); ++i) {
       off_[i] = step * step / 12 * (sample.after.a[i] - sample.before.a[i]);
     }
+  }
+  if (is_led()) {
+    judge_.add_time(static_cast<double>(steps) * step, 0.0);
+    if (is_in_turn(sample.step)) add_led_errors(sample);
+    add_speed_error(sample);
+    return;
   }
   const double speed = local_errors_.add(off_, v, step, steps);
   judge_.add_time(static_cast<double>(steps) * step, speed);

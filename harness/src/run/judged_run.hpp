@@ -86,7 +86,11 @@ class JudgedRun {
   /// What may be behind a loss with this scheme.
   [[nodiscard]] std::string hint() const;
   void add_local_errors(const Sample& sample);
+  /// Whether drivers lead points about, other than all at one constant velocity.
+  [[nodiscard]] bool is_led() const { return is_driven_ && !judge_.judges_energy(); }
+  void add_led_errors(const Sample& sample);
   void add_speed_error(const Sample& sample);
+  [[nodiscard]] bool is_in_turn(long step) const;
   void balance_energy(const Sample& sample);
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
@@ -108,7 +112,7 @@ class JudgedRun {
   LastGood good_;
   BranchWatch watch_;
   std::optional<PowerBalance> balance_;  // where energy is not conserved
-  long judgements_ = 0, balanced_ = 0;   // balanced_: step
+  long judgements_ = 0, balanced_ = 0;   // balanced_: step, of errors where drivers lead, too
   std::optional<StepAgain> again_;       // of the trapezoidal forms
   long done_again_ = 0;                  // step
   LocalErrors local_errors_;
@@ -116,6 +120,7 @@ class JudgedRun {
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool adds_local_errors_;    // nothing better tells, and constraints do not fix all
+  bool is_driven_;            // something is
   bool has_figures_ = false;  // of a state beyond the start
   bool is_over_ = false;
   SampledTime copying_, judging_, looking_;

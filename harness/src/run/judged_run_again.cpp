@@ -1,7 +1,9 @@
 // Steps of a judged run that are done again: where its motion was lost, and what a step left.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "model_math/kinematics.hpp"
 #include "run/judged_run.hpp"
 
 namespace mbs {
@@ -11,6 +13,20 @@ using Clock = SampledTime::Clock;
 
 bool is_trapezoidal(Scheme scheme) {
   return scheme == Scheme::penalty || scheme == Scheme::saddle_point;
+}
+
+/// The velocity v less what is at a right angle to `way`, weighted with M: so is what drivers give
+/// to points, if constraints leave `way` free.
+std::vector<double> along(const Model& model, std::vector<double> way,
+                          const std::vector<double>& v) {
+  std::vector<double> momentum(way.size());
+  mass_times(model, way, momentum);
+  const auto times = [&](const std::vector<double>& x) {
+    return std::inner_product(momentum.begin(), momentum.end(), x.begin(), 0.0);
+  };
+  const double squared = times(way), share = squared == 0.0 ? 0.0 : times(v) / squared;
+  for (double& x : way) x *= share;
+  return way;
 }
 
 }  // namespace
@@ -73,6 +89,24 @@ long JudgedRun::first_across(long step) {
   return step;
 }
 
+/// Where drivers lead points about, their velocity is no direction that errors go on in, and a part
+/// of off_ is none. Half steps tell what is, unless off_ as a whole is too little to count.
+void JudgedRun::add_led_errors(const Sample& sample) {
+  double largest = 0.0;
+  for (const double off : off_) largest = std::max(largest, std::abs(off));
+  const double negligible =
+      0.1 * AccurateBounds{}.local_error * judge_.length() / static_cast<double>(steps_);
+  if (!(largest <= negligible)) {
+    if (!local_half_) {
+      const auto begin = SampledTime::Clock::now();
+      local_half_.emplace(access_.create, settings_.step);
+      aside_ += SampledTime::since(begin);
+    }
+    off_ = local_half_->error(sample.before, sample.after);
+  }
+  local_errors_.add(off_, off_, settings_.step.step, sample.step - balanced_);
+}
+
 /// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
 /// steps. Not by those that cannot have left enough.
 void JudgedRun::add_speed_error(const Sample& sample) {
@@ -95,8 +129,10 @@ void JudgedRun::add_speed_error(const Sample& sample) {
                    static_cast<double>(summary_.passes) / static_cast<double>(summary_.steps));
   }
   const auto ready = Clock::now();  // its set-up is no more judging than that of the run is a step
-  local_errors_.add_speed(again_->error(sample.before, sample.after, negligible),
-                          judge_.velocity(sample.after), settings_.step.step, since,
+  const SpeedError& error = again_->error(sample.before, sample.after, negligible);
+  const std::vector<double>& v = judge_.velocity(sample.after);
+  local_errors_.add_speed(error, is_led() ? along(scene_.model, error.now, v) : v,
+                          settings_.step.step, since,
                           balance_ ? balance_->braked(time(step), sample.after) : 0.0);
   done_again_ = step;
   doing_again_ += SampledTime::since(ready);
