@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "exact/four_bar_exact.hpp"
@@ -72,6 +73,22 @@ TEST(InitialState, RedundantConstraintsChangeNothingButTheirMultipliers) {
     EXPECT_NEAR(state.lambda[k], expected.lambda[k], 1e-8) << k;
   }
   expect_consistent(model, state);
+}
+
+/// Rows that depend on each other contradict themselves by what is rounded of them. More rounds
+/// than it takes would move the multipliers along what has no force, further each time.
+TEST(InitialState, MultipliersHaveNothingOfWhatHasNoForce) {
+  const Model model = load_scene(MBS_ROOT "/harness/scenes/examples/driven_elbow.json").model;
+  const State state = initial_state(model);
+  const Eigen::MatrixXd S = test::dense_constraint_matrix(model, state.q);
+  const int m = model.constraints();
+  Eigen::VectorXd idle = Eigen::VectorXd::Ones(m);
+  for (int round = 0; round < 3; ++round) {
+    idle = (S + 1e-9 * Eigen::MatrixXd::Identity(m, m)).ldlt().solve(idle).normalized();
+  }
+  ASSERT_LT((S * idle).norm(), 1e-12);
+  const Eigen::VectorXd lambda = Eigen::VectorXd::Map(state.lambda.data(), m);
+  EXPECT_LT(std::abs(idle.dot(lambda)), 2e-7 * lambda.norm());
 }
 
 TEST(InitialState, WithoutConstraintsIsFreeFall) {

@@ -91,16 +91,20 @@ State consistent_state(const Model& model, std::span<const double> q, std::span<
   for (int i = 0; i < n; ++i) right[i] = force[static_cast<std::size_t>(i)];
   Vector solution = Vector::Zero(n + m);
   // Each round removes the error of -eps: lambda_k+1 from Phi_q a - eps (lambda_k+1 - lambda_k).
+  // The change of lambda is eps (S + eps)^-1 times the one before, S = Phi_q M^-1 Phi_q^T, so it is
+  // shorter each time: where it is not, what is left is rounding, which goes on for ever.
   constexpr int kMaxRounds = 100;
+  Real change = std::numeric_limits<Real>::infinity();
   for (int round = 0; round < kMaxRounds; ++round) {
     for (int k = 0; k < m; ++k) {
       right[n + k] = -static_cast<Real>(curvature[static_cast<std::size_t>(k)]) -
                      saddle_point.epsilon() * solution[n + k];
     }
     const Vector next = saddle_point.solve(right);
-    const Real change = (next - solution).cwiseAbs().maxCoeff();
+    const Vector step = next - solution;
+    const Real before = std::exchange(change, step.tail(m).norm());
     solution = next;
-    if (!(change > 1e-17L * solution.cwiseAbs().maxCoeff())) break;
+    if (!(change < before && step.norm() > 1e-17L * solution.norm())) break;
   }
   State state{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}, t};
   for (int i = 0; i < n; ++i) state.a.push_back(static_cast<double>(solution[i]));
