@@ -19,8 +19,9 @@ void require_finite(double value, const std::string& what) {
 int count_variables(const ModelData& data) {
   std::vector<int> offsets;
   for (const Point& point : data.points) {
+    const std::string what = "point '" + point.name + "'";
     for (int axis = 0; axis < data.dimension; ++axis) {
-      require_finite(point.position[static_cast<std::size_t>(axis)], "point '" + point.name + "'");
+      require_finite(point.position[static_cast<std::size_t>(axis)], what);
     }
     if (!point.is_fixed()) offsets.push_back(point.offset);
   }
@@ -184,21 +185,22 @@ void check_drivers(const ModelData& data, int variables) {
 }
 
 void check_linear(const ModelData& data, int variables) {
+  std::vector<int> coordinates;
   for (const LinearConstraint& constraint : data.linear_constraints) {
-    std::vector<int> coordinates;
+    const std::string what = "constraint '" + constraint.name + "'";
+    coordinates.clear();
     for (const LinearConstraint::Term& term : constraint.terms) {
       if (term.coordinate < 0 || term.coordinate >= variables) {
-        fail("constraint '" + constraint.name + "' refers to coordinate " +
-             std::to_string(term.coordinate));
+        fail(what + " refers to coordinate " + std::to_string(term.coordinate));
       }
-      require_finite(term.coefficient, "constraint '" + constraint.name + "'");
+      require_finite(term.coefficient, what);
       coordinates.push_back(term.coordinate);
     }
     std::sort(coordinates.begin(), coordinates.end());
     if (std::adjacent_find(coordinates.begin(), coordinates.end()) != coordinates.end()) {
-      fail("constraint '" + constraint.name + "' names a coordinate twice");
+      fail(what + " names a coordinate twice");
     }
-    require_finite(constraint.value, "constraint '" + constraint.name + "'");
+    require_finite(constraint.value, what);
   }
 }
 
