@@ -24,6 +24,10 @@ std::string description(const nlohmann::json& value) {
   return value.dump();
 }
 
+bool is_usable(const nlohmann::json& value) {
+  return value.is_number() && std::abs(value.get<double>()) <= kLargestNumber;
+}
+
 /// Levenshtein distance.
 std::size_t distance(std::string_view x, std::string_view y) {
   std::vector<std::size_t> row(y.size() + 1);
@@ -126,11 +130,8 @@ bool JsonNode::boolean() const {
 
 double JsonNode::number() const {
   if (!value_->is_number()) fail("a number");
-  const auto number = value_->get<double>();
-  if (!(std::abs(number) <= kLargestNumber)) {
-    fail(fmt::format("a number of magnitude up to {:g}", kLargestNumber));
-  }
-  return number;
+  if (!is_usable(*value_)) fail(fmt::format("a number of magnitude up to {:g}", kLargestNumber));
+  return value_->get<double>();
 }
 
 double JsonNode::number_above(double bound, const std::string& allowed) const {
@@ -144,6 +145,9 @@ double JsonNode::number_at_least(double bound, const std::string& allowed) const
 }
 
 std::vector<double> JsonNode::numbers() const {
+  if (value_->is_array() && std::ranges::all_of(*value_, is_usable)) {  // no path is needed
+    return value_->get<std::vector<double>>();
+  }
   std::vector<double> numbers;
   for (const JsonNode& node : items()) numbers.push_back(node.number());
   return numbers;
