@@ -7,12 +7,14 @@ from types import SimpleNamespace
 import pandas
 import pytest
 
+from analysis.core.files import digest, read_json
 from analysis.core.registry import Registry
 from study.core import contest
 from study.core.cell import Contender
 from study.families import plan as families
 from study.limit import plan
-from study.tests.conftest import ROOT, study
+from study.tests.conftest import FAKE, ROOT, environment, study
+from study.tools import fragments
 
 REGISTRY = Registry({"implementations": [
     {"folder": "one", "available": True, "library": "L", "variants": [{"name": "one/a"}, {"name": "one/b"}]},
@@ -201,6 +203,62 @@ def test_a_sweep_may_have_lanes_that_fail(tmp_path, failed, status, code):
     said = f"mbs: a/b on four-bar:1: {failed} of 5 lanes failed: …"
     done = swept(tmp_path, end=f"echo '{said}' >&2; exit {status}")
     assert (done.returncode, done.stderr) == (code, f"{said}\n" if code else "")
+
+
+def million(tmp_path, *, commit="HEAD", dirty="false", rows=50):
+    """`study/limit/million` with 50 lanes of a program that says which one it was of each command, and `rows` of which it is a table."""
+    program, log = tmp_path / "mbs", tmp_path / "log"
+    program.write_text(f"""#!/bin/sh
+case $1 in sweep|merge-sweep) ;; *) exec {FAKE} "$@" ;; esac
+echo "$@" >> {log}
+for out; do :; done
+case $* in *1/10*) echo '5 lanes: 5 ok' ;; *) echo 'mbs: 1 of 50 lanes failed: …' >&2; code=1 ;; esac
+echo mass,status > $out
+for lane in $(seq {rows - 1}); do echo $lane,ok; done >> $out
+echo 1,diverged >> $out
+exit ${{code:-0}}
+""")
+    program.chmod(0o755)
+    head = subprocess.run(["git", "rev-parse", commit], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip() or commit
+    done = subprocess.run([ROOT / "study/limit/million", "four-bar:10", "--lanes", "50", "--nodes", "10", "--results", tmp_path / "kept"],
+                          env=environment(program, FAKE_COMMIT=head, FAKE_DIRTY=dirty), capture_output=True, text=True, check=False)
+    return done, log.read_text().splitlines() if log.exists() else []
+
+
+def test_a_large_sweep_is_recorded(tmp_path):
+    done, ran = million(tmp_path)
+    assert done.returncode == 0, done.stderr
+    [path] = (tmp_path / "kept").iterdir()
+    kept = read_json(path)
+    assert path.name == "four-bar-10.json" and kept["outcomes"] == {"ok": 49, "diverged": 1} and kept["context"]["dirty"] == "false"
+    assert [(row["jobs"], row["lanes"]) for row in (*kept["part"], kept["whole"])] == [(1, 5), (2, 5), (2, 50)]
+    assert [("--shard 1/10" in words, words.split()[0]) for words in ran] == [
+        (True, "sweep"), (True, "sweep"), (False, "sweep"), (False, "merge-sweep")]
+    assert kept["whole"]["command"].startswith("build/mbs sweep four-bar:10 ") and str(tmp_path) not in path.read_text()
+    assert (tmp_path / "mbs").exists() and kept["program"] == digest(tmp_path / "mbs") and len(kept["table"]) == 64
+    assert fragments.million([kept]) in done.stdout
+
+
+@pytest.mark.parametrize("how, said", [({"dirty": "true"}, "a dirty tree"), ({"commit": "0" * 40}, "no commit of this repository"),
+                                       ({"rows": 40}, "the table has 40 rows, the sweep 50 lanes")])
+def test_a_large_sweep_that_is_no_evidence_is_not_recorded(tmp_path, how, said):
+    done, ran = million(tmp_path, **how)
+    assert done.returncode == 1 and said in done.stderr and not (tmp_path / "kept").exists()
+    assert bool(ran) == ("rows" in how)
+
+
+def test_what_is_shown_of_a_large_sweep_is_projected_beside_what_was_observed():
+    row = {"wall_s": 2.0, "memory_mb": 10.0, "lanes": 100}
+    record = {"scene": "s:1", "implementation": "a/b", "lanes": 1000, "nodes": 10, "part": [row, row | {"wall_s": 1.0}],
+              "whole": {"wall_s": 12.5, "memory_mb": 30.0, "command": "build/mbs sweep s:1"}, "merge": {"wall_s": 3.0, "memory_mb": 4.0},
+              "context": {"commit": "c" * 40, "cpu_model": "P", "num_cpus": 2}, "program": "d" * 64, "table": "e" * 64, "bytes": 2e6,
+              "outcomes": {"ok": 990, "diverged": 10}}
+    shown = dict(line.strip("| ").split(" | ") for line in fragments.million([record]).splitlines()[2:])
+    assert [shown[name] for name in ("lanes a second, the part by one job", "the part by two jobs", "all lanes by two jobs",
+                                     "all lanes by two jobs, projected from the part, s", "observed, s", "outcomes",
+                                     "projected: parts on as many nodes at once, then the table, s", "memory of the largest process, MB")] == [
+        "50", "100", "80", "10", "12.5", "10 diverged, 990 ok", "4 (10 nodes)", "30"]
+    assert fragments.million([]) == "No record is stored.\n"
 
 
 def test_nothing_is_asked_where_nobody_takes_part(measured):

@@ -86,6 +86,13 @@ def test_at_most_three_sets_are_stored_each_of_a_clean_tree():
         assert str(read_json(folder / "set.json")["context"]["dirty"]).lower() == "false"
 
 
+def test_stored_sweeps_are_a_million_lanes_of_a_clean_tree_in_little_memory():
+    for record in map(read_json, fragments.SWEEPS.glob("*.json")):
+        assert str(record["context"]["dirty"]).lower() == "false" and record["lanes"] >= 10**6 == 100 * record["part"][0]["lanes"]
+        assert record["lanes"] == sum(record["outcomes"].values()) == record["whole"]["lanes"] == record["merge"]["lanes"]
+        assert max(row["memory_mb"] for row in (*record["part"], record["whole"], record["merge"])) < 500
+
+
 @pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
 def test_a_stored_set_has_all_parts(folder):
     assert set(read_json(folder / "set.json")["parts"]) == set(parts())

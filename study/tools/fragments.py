@@ -6,9 +6,11 @@ import numpy
 
 from analysis.core import site
 from analysis.core.files import ROOT, RULE, StudyError, as_json, read_json, write_text
+from analysis.core.text import number
 from analysis.core.view import Folder
 from study.tools.merge import agreement, machine
 
+SWEEPS = ROOT / "results" / "sweeps"  # records of study/limit/million
 MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
 
@@ -26,7 +28,10 @@ def filled(text):
 
 
 def fragment(what):
-    """"cases": the table of the main set, with a row about the processors that are compared; a part's name: its answers as a list."""
+    """"cases": the table of the main set, with a row about the processors that are compared; a part's name: its answers as a list;
+    "million": the records of large sweeps."""
+    if what == "million":
+        return million([read_json(path) for path in sorted(SWEEPS.glob("*.json"))])
     main = main_set()
     known = site.answers_of(main)
     if what == "cases":
@@ -36,6 +41,38 @@ def fragment(what):
     if known.get(what) is None:
         raise StudyError(f"{main} has no answers of '{what}'")
     return "".join(f"- {one['text']}\n" for one in known[what]["answers"])
+
+
+def million(records):
+    """The records of large sweeps, a column each: what was run, and what is projected from a part of it."""
+    if not records:
+        return "No record is stored.\n"
+    columns = [_large_sweep(record) for record in records]
+    lines = ["| | " + " | ".join(f"`{record['scene']}`" for record in records) + " |", "|---" * (len(records) + 1) + "|",
+             *(f"| {name} | {' | '.join(column[name] for column in columns)} |" for name in columns[0])]
+    return "\n".join(lines) + "\n"
+
+
+def _large_sweep(record):
+    lanes, nodes, (one, two), whole = record["lanes"], record["nodes"], record["part"], record["whole"]
+    mine, merge, context = one["lanes"], record["merge"]["wall_s"], record["context"]
+    return {"implementation": f"`{record['implementation']}`",
+            "lanes": f"{lanes}",
+            "lanes of the part of one node": f"{mine}",
+            "lanes a second, the part by one job": number(mine / one["wall_s"]),
+            "the part by two jobs": number(mine / two["wall_s"]),
+            "all lanes by two jobs": number(lanes / whole["wall_s"]),
+            "all lanes by two jobs, projected from the part, s": number(lanes / mine * two["wall_s"]),
+            "observed, s": number(whole["wall_s"]),
+            "their table written (`merge-sweep`), s": number(merge),
+            "projected: parts on as many nodes at once, then the table, s": f"{number(two['wall_s'] + merge)} ({nodes} nodes)",
+            "memory of the largest process, MB": number(max(row["memory_mb"] for row in (one, two, whole, record["merge"]))),
+            "outcomes": ", ".join(f"{count} {name}" for name, count in sorted(record["outcomes"].items())),
+            "table, MB": number(record["bytes"] / 1e6),
+            "its SHA-256 begins with": record["table"][:16],
+            "commit, `mbs` (SHA-256)": f"{context['commit'][:10]}, {record['program'][:16]}",
+            "processor": f"{context['cpu_model']}, {context['num_cpus']} cores",
+            "command": f"`{whole['command']}`"}
 
 
 def _machines(main, others):
