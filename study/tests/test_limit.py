@@ -234,6 +234,7 @@ def test_a_large_sweep_is_recorded(tmp_path):
     assert [(row["jobs"], row["lanes"]) for row in (*kept["part"], kept["whole"])] == [(1, 5), (2, 5), (2, 50)]
     assert [("--shard 1/10" in words, words.split()[0]) for words in ran] == [
         (True, "sweep"), (True, "sweep"), (False, "sweep"), (False, "merge-sweep")]
+    assert max(row["memory_mb"] for row in (*kept["part"], kept["whole"])) < 60, "of the program, not of who started it"
     assert kept["whole"]["command"].startswith("build/mbs sweep four-bar:10 ") and str(tmp_path) not in path.read_text()
     assert (tmp_path / "mbs").exists() and kept["program"] == digest(tmp_path / "mbs") and len(kept["table"]) == 64
     assert fragments.million([kept]) in done.stdout
