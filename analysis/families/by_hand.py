@@ -17,8 +17,9 @@ def table(data, rests, rule, worth):
         features, weights = data.features.loc[losses.index], data.weights(losses.index)
         chosen = {}
         for family, rest in rests.items():
-            left = features[[data.family[scene] == family for scene in features.index]]
-            for where, name in _cases(rest, scheme, features, weights, worth):
+            out = numpy.array([data.family[scene] == family for scene in features.index])
+            left, others = features[out], features[~out]  # nor are limits placed by the counts of who is left out
+            for where, name in _cases(rest, scheme, others, data.weights(others.index), worth):
                 chosen |= dict.fromkeys(_inside(where, left), name)
         for where, name in _cases(rule, scheme, features, weights, worth):
             scenes = _inside(where, features)

@@ -292,6 +292,14 @@ def test_bounds_say_what_does_not_hold_and_where():
     assert rows["compiled code, above n = 2000"] == ("none was timed", None)
 
 
+def test_limits_by_hand_are_found_without_the_counts_of_who_is_left_out(monkeypatch):
+    seen, cases = [], by_hand._cases
+    monkeypatch.setattr(by_hand, "_cases", lambda rule, scheme, features, *more: (
+        seen.append({scene.partition(":")[0] for scene in features.index}), cases(rule, scheme, features, *more))[1])
+    *rests, whole = mechanisms() and seen
+    assert [whole - rest for rest in rests] == [{family} for family in ("chain", "tree", "grid", "beam", "block", "shell")]
+
+
 def test_the_rule_by_hand_is_held_to_the_same_bounds():
     losing = mechanisms(lambda family, name: 10.0 if (family, name) == ("tree", "one/a") else 1.0)
     assert [row[3] for row in bounds._by_hand(losing["by_hand"])] == [False, False]
