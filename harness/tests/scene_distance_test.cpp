@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "controls/controls.hpp"
@@ -81,6 +82,38 @@ TEST(HalfStep, SeesBodiesWithoutFreePoints) {
   EXPECT_EQ(summary.status, RunStatus::degraded);
   EXPECT_GT(summary.position_error_estimate.value(), 0.1);  // m; 0.26 to 0.29 against fine steps
   EXPECT_GT(summary.local_error_sum.value(), 3e-3);
+}
+
+/// A pointer of 0.1 m on a torsion spring of 1 Hz, at rest in the middle of a turning rod of 20 m.
+Scene pointer_on_rod() {
+  return scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "O", "position": [0, 0], "fixed": true}, {"name": "P", "position": [0.1, 0]},
+      {"name": "E", "position": [10, 0], "velocity": [0, 5]},
+      {"name": "F", "position": [-10, 0], "velocity": [0, -5]}],
+      "rods": [{"name": "rod", "between": ["E", "F"], "mass": 1000},
+               {"name": "pointer", "between": ["O", "P"], "mass": 1}],
+      "constraints": [
+          {"type": "linear", "terms": [{"point": "E", "axis": "x", "coefficient": 1},
+                                       {"point": "F", "axis": "x", "coefficient": 1}]},
+          {"type": "linear", "terms": [{"point": "E", "axis": "y", "coefficient": 1},
+                                       {"point": "F", "axis": "y", "coefficient": 1}]}],
+      "torsion_springs": [{"from": ["O", "E"], "to": ["O", "P"], "stiffness": 0.1315947}]})"),
+                  "test");
+}
+
+TEST(SceneDistance, AShortLinkIsMeasuredByItself) {
+  // Off by 2.7 % of the pointer after 40 s, and by little of the rod.
+  const Scene scene = pointer_on_rod();
+  ASSERT_GT(judged_length(scene.model), 1.0);
+  RunSettings settings = test::automatic_settings(scene, 40.0);
+  settings.step = chosen(scene.model, {.step = 0.02});
+  const RunSummary coarse = run(scene, test::reference(), settings);
+  EXPECT_EQ(coarse.status, RunStatus::degraded);
+  EXPECT_NE(coarse.reason.find("\"pointer\""), std::string::npos) << coarse.reason;
+  const RunSummary halved = run_with_half_step(scene, 0.02, 40.0, 1e-10);
+  EXPECT_NE(halved.reason.find("of a length at most"), std::string::npos) << halved.reason;
+  const RunSummary fine = run_with_half_step(scene, 2.5e-3, 40.0, 1e-10);
+  EXPECT_EQ(fine.status, RunStatus::ok) << fine.reason;
 }
 
 TEST(HalfStep, LeavesLocalErrorsToCountToo) {

@@ -21,6 +21,7 @@ HalfStepRun::HalfStepRun(const Scene& scene, const StepAgain::Create& create,
       state_(initial),
       length_(length),
       lengths_(lengths_of_points(scene, length)),
+      links_(short_links(scene.model, length)),
       factor_(richardson_factor(half.scheme)) {
   simulation_->set_state(initial);
 }
@@ -45,7 +46,14 @@ void HalfStepRun::compare(const State& whole) {
     keep_larger(distance, squared);
     keep_larger(share, squared / (its * its));
   };
-  for_each_point(scene_, length_, see, [&](std::size_t i) { return whole.q[i] - state_.q[i]; });
+  const auto off = [&](std::size_t i) { return whole.q[i] - state_.q[i]; };
+  for_each_point(scene_, length_, see, off);
+  auto link = links_.begin();
+  const auto see_link = [&](const Vector3& apart) {
+    const double its = (link++)->length;
+    keep_larger(share, dot(apart, apart) / (its * its));
+  };
+  for_each_link(scene_.model, links_, see_link, off);
   keep_larger(error_, factor_ * std::sqrt(distance));
   keep_larger(share_, factor_ * std::sqrt(share));
 }

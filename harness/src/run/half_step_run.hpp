@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "run/scene_distance.hpp"
 #include "run/step_again.hpp"
 #include "scene/scene.hpp"
 
@@ -33,7 +34,7 @@ class HalfStepRun {
   /// Largest estimated distance of a point so far, m; infinite once the half-step simulation is
   /// lost, not a number before compare().
   [[nodiscard]] double position_error_max() const { return error_; }
-  /// The same over the length of each point, lengths_of_points().
+  /// The same over the length of each point, lengths_of_points(), or of a ShortLink.
   [[nodiscard]] double share_max() const { return share_; }
 
  private:
@@ -42,6 +43,7 @@ class HalfStepRun {
   State state_;
   double length_;                // of unit vectors, m
   std::vector<double> lengths_;  // of points, m
+  std::vector<ShortLink> links_;
   double factor_;
   double error_ = std::numeric_limits<double>::quiet_NaN();  // nothing was compared
   double share_ = error_;

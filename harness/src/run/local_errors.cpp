@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "run/scene_distance.hpp"
-
 namespace mbs {
 
 namespace {
@@ -17,7 +15,7 @@ auto entries_of(std::span<const double> x) {
 }  // namespace
 
 LocalErrors::LocalErrors(const Scene& scene, double length, const std::vector<bool>& passes_on)
-    : scene_(scene), length_(length) {
+    : scene_(scene), length_(length), links_(short_links(scene.model, length)) {
   if (passes_on.empty()) return;
   const auto points = scene.model.points();
   const auto is_of_such = [&](const Point& point) {
@@ -26,14 +24,18 @@ LocalErrors::LocalErrors(const Scene& scene, double length, const std::vector<bo
   const std::vector<double> lengths = lengths_of_points(scene, length);
   auto its = lengths.begin();
   for (const Point& point : points) {
-    if (!point.is_fixed()) points_.push_back({.length = *its++, .passes_on = is_of_such(point)});
+    if (!point.is_fixed()) points_.push_back({&point.name, *its++, is_of_such(point)});
   }
+  const auto is_number_of_such = [&](int point) {
+    return is_of_such(points[static_cast<std::size_t>(point)]);
+  };
   for (const Marker& marker : scene.elements.markers) {
-    const auto is_on_such = [&](const Marker::Part& part) {
-      return is_of_such(points[static_cast<std::size_t>(part.point)]);
-    };
-    points_.push_back(
-        {.length = *its++, .passes_on = std::ranges::any_of(marker.parts, is_on_such)});
+    points_.push_back({&marker.name, *its++,
+                       std::ranges::any_of(marker.parts, is_number_of_such, &Marker::Part::point)});
+  }
+  for (const ShortLink& link : links_) {
+    points_.push_back({&link.distance->name, link.length,
+                       is_number_of_such(link.distance->a) || is_number_of_such(link.distance->b)});
   }
 }
 
@@ -57,7 +59,9 @@ double LocalErrors::add(std::span<const double> off, std::span<const double> v, 
     }
   };
   for_each_point(scene_, length_, add, entries_of(off), entries_of(v));
-  return std::sqrt(fastest);
+  const double result = std::sqrt(fastest);  // without links
+  for_each_link(scene_.model, links_, add, entries_of(off), entries_of(v));
+  return result;
 }
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
@@ -81,27 +85,17 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
         steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) + rms * std::sqrt(steps_);
     sums.way += time * (gained / speed > speed ? speed : gained / speed);
   };
-  for_each_point(scene_, length_, add, entries_of(error.now), entries_of(error.later),
-                 entries_of(v));
+  const auto now = entries_of(error.now), later = entries_of(error.later), way = entries_of(v);
+  for_each_point(scene_, length_, add, now, later, way);
+  for_each_link(scene_.model, links_, add, now, later, way);
 }
 
 LocalErrors::Worst LocalErrors::worst() const {
   Worst result;
-  std::size_t worst = 0;
-  for (std::size_t k = 0; k < points_.size(); ++k) {
-    const Sums& sums = points_[k];
+  for (const Sums& sums : points_) {
     double sum = sums.lag + sums.way + std::sqrt(time_ * sums.shift);
     if (std::isnan(sum)) sum = HUGE_VAL;
-    if (sum / sums.length <= result.share) continue;
-    result.sum = sum;
-    result.share = sum / sums.length;
-    worst = k;
-  }
-  for (const Point& point : scene_.model.points()) {
-    if (!point.is_fixed() && worst-- == 0) result.point = point.name;
-  }
-  if (result.point.empty() && worst < scene_.elements.markers.size()) {
-    result.point = scene_.elements.markers[worst].name;
+    if (sum / sums.length > result.share) result = {sum, sum / sums.length, *sums.name};
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "run/scene_distance.hpp"
 #include "run/step_again.hpp"
 #include "scene/scene.hpp"
 
@@ -47,14 +48,15 @@ class LocalErrors {
   /// Lag + way + way of shifts so far of the point for which it is the most of its length.
   struct Worst {
     double sum = 0.0;    ///< m
-    double share = 0.0;  ///< of lengths_of_points()
+    double share = 0.0;  ///< of lengths_of_points(), or of that of a ShortLink
     std::string point = "";
   };
   [[nodiscard]] Worst worst() const;
 
  private:
   struct Sums {
-    double length = 1.0;  // m
+    const std::string* name;
+    double length;  // m
     bool passes_on = false;
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples
@@ -63,7 +65,8 @@ class LocalErrors {
 
   const Scene& scene_;
   double length_;
-  std::vector<Sums> points_;            // in the order of for_each_point()
+  std::vector<ShortLink> links_;
+  std::vector<Sums> points_;            // in the order of for_each_point(), then the links
   double samples_ = 0.0, steps_ = 0.0;  // m, N, without what dampers took away
   double time_ = 0.0;                   // t of shifts, s
 };
