@@ -52,8 +52,10 @@ void print_rung(const RungReport& report) {
   fmt::print("\n");
   if (report.result == RungResult::failed) {
     const Finding& found = report.finding;
-    const auto text = [](const std::optional<double>& x) {
-      return x ? fmt::format("{:.9g}", *x) : std::string("not a number");
+    const bool is_close = found.value && found.reference &&
+                          std::abs(*found.value - *found.reference) < 1e-7 * std::abs(*found.value);
+    const auto text = [&](const std::optional<double>& x) {
+      return x ? fmt::format("{:.{}g}", *x, is_close ? 16 : 9) : std::string("not a number");
     };
     if (!found.quantity.empty()) {
       fmt::print("    {}{}{}", found.quantity, found.row.empty() ? "" : ", ", found.row);

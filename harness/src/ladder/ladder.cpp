@@ -33,7 +33,8 @@ std::vector<std::string> gate_mistakes(const std::string& check) {
        {"the pass that converges, or that is the last, does not update lambda",
         "do_set_state() leaves something of earlier steps behind: lambda, a time, kept factors",
         "Newton ends too early or too late: it ends after the pass whose max |Delta q| <= "
-        "tolerance"}},
+        "tolerance",
+        "a later pass uses the Phi_q or T of an earlier one, or projects before the last pass"}},
       {"free-running",
        {"something is carried from step to step that do_get_state() does not show",
         "a step at the pass limit is repeated, left out or reported as a failure"}},
@@ -259,6 +260,9 @@ RungReport Climber::gate(const std::string& rung, const Scene& scene, StepSettin
 RungReport Climber::one_setting(const StepSettings& settings) const {
   RungReport report = gate(other_settings(settings), load_scene("four-bar:2"), settings);
   report.equation = "paper/other_schemes.md";
+  if (report.result == RungResult::failed) {
+    report.mistakes.insert(report.mistakes.begin(), "the step does not look at the setting");
+  }
   return report;
 }
 

@@ -15,7 +15,8 @@ namespace {
 
 using Look = StepRung::Look;
 
-constexpr double kAllowed = 1e-6;  ///< of the largest entry
+constexpr double kAllowed = 1e-6;     ///< of the largest entry
+constexpr double kEvaluated = 3e-12;  ///< the same of f and T, which nothing amplifies
 
 enum class Shape { variables, constraints, jacobian, tangent };
 
@@ -150,9 +151,9 @@ void mirror(std::vector<double>& T, std::size_t n) {
   }
 }
 
-/// At most `allowed` apart; without it, kAllowed of the largest entry.
+/// At most `allowed` apart.
 std::optional<Finding> compare(const Model& model, Quantity ours, const Quantity& expected,
-                               std::optional<double> given = {}) {
+                               double allowed) {
   const std::vector<double>& y = expected.values;
   if (ours.values.size() != y.size()) {
     return Finding{ours.name,
@@ -165,7 +166,6 @@ std::optional<Finding> compare(const Model& model, Quantity ours, const Quantity
     mirror(ours.values, static_cast<std::size_t>(model.variables()));
   }
   const std::vector<double>& x = ours.values;
-  const double allowed = given.value_or(kAllowed * largest_of(y));
   const auto differs = [&](std::size_t i) { return !(std::abs(x[i] - y[i]) <= allowed); };
   std::size_t count = 0, worst = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -179,7 +179,7 @@ std::optional<Finding> compare(const Model& model, Quantity ours, const Quantity
   const double factor = common_factor(x, y, allowed);
   if (factor == 0.0) {
     detail += ": all are zero, as if nothing had been computed";
-  } else if (std::isfinite(factor)) {
+  } else if (std::abs(factor - 1.0) > 1e-5) {
     detail += fmt::format(": all are {:.6g} times the reference's", factor);
   }
   return Finding{ours.name, entry_name(model, ours.shape, worst), number(x[worst]),
@@ -230,10 +230,13 @@ Compared compare_step(const StepRung& rung, const Maker& make, const Model& mode
         !expected.quantities[i].values.empty()) {
       return {false, {}};
     }
-    const bool projected = rung.look == Look::both && quantity.name.starts_with("a'");
-    const auto finding = compare(
-        model, std::move(quantity), expected.quantities[i],
-        projected ? std::optional(allowed_of_projected(reference, settings, state)) : std::nullopt);
+    const Quantity& right = expected.quantities[i];
+    double allowed = kAllowed * largest_of(right.values);
+    if (rung.name == "f" || rung.name == "T") allowed = kEvaluated * largest_of(right.values);
+    if (rung.look == Look::both && quantity.name.starts_with("a'")) {
+      allowed = allowed_of_projected(reference, settings, state);
+    }
+    const auto finding = compare(model, std::move(quantity), right, allowed);
     if (finding) return {true, finding};
   }
   if (ours.outcome.status != expected.outcome.status || ours.outcome.passes != 1) {

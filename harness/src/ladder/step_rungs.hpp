@@ -46,8 +46,9 @@ struct Compared {
 };
 
 /// Compares what `rung` looks at in the step of `make`'s simulation from `state` with the
-/// reference's. Rounding, amplified by the condition of T, moves it by up to some 1e-7 of its largest
-/// entry; 1e-6 is allowed, of the projected a' 1e-6 of the a' that it is made of.
+/// reference's. Rounding, amplified by the condition of T, moves it by up to some 1e-7 of its
+/// largest entry; 1e-6 is allowed, of the projected a' 1e-6 of the a' that it is made of. Of f and
+/// T, which nothing amplifies, 3e-12: M and Q are small in them.
 Compared compare_step(const StepRung& rung, const Maker& make, const Model& model,
                       const StepSettings& settings, const State& state);
 

@@ -8,7 +8,15 @@
 namespace mbs::test {
 namespace {
 
-enum class Mistake { none, half_jacobian, lambda_first, no_curvature };
+enum class Mistake {
+  none,
+  half_jacobian,
+  half_mass,
+  lambda_first,
+  lambda_sign,
+  no_curvature,
+  always_both
+};
 
 template <Mistake kMistake, bool kShows>
 class Planted final : public Simulation {
@@ -24,7 +32,8 @@ class Planted final : public Simulation {
         scale_(settings.step * settings.step / 4) {
     M_ = Eigen::MatrixXd::Zero(n_, n_);
     for (const MassEntry& entry : model.mass()) {
-      M_(entry.row, entry.col) = M_(entry.col, entry.row) = entry.value;
+      M_(entry.row, entry.col) = entry.value;
+      if (kMistake != Mistake::half_mass) M_(entry.col, entry.row) = entry.value;
     }
     Q_ = Vector::Map(model.force().data(), n_);
   }
@@ -59,7 +68,8 @@ class Planted final : public Simulation {
           outcome.status == StepStatus::converged || outcome.passes == settings_.max_passes;
       if (is_last) project();
       evaluate_constraints();
-      if (kMistake != Mistake::lambda_first) lambda_ += settings_.penalty * Phi_;
+      const double sign = kMistake == Mistake::lambda_sign ? -1.0 : 1.0;
+      if (kMistake != Mistake::lambda_first) lambda_ += sign * settings_.penalty * Phi_;
     }
     return outcome;
   }
@@ -70,7 +80,7 @@ class Planted final : public Simulation {
     };
     Vector rate = Vector::Zero(m_);
     take_away(v_, rate);
-    if (settings_.projections == Projections::velocity) return;
+    if (settings_.projections == Projections::velocity && kMistake != Mistake::always_both) return;
     if (kMistake != Mistake::no_curvature) {
       constraint_curvature(model_, 0.0, values(q_), values(v_), {rate.data(), size(m_)});
     }
@@ -137,9 +147,12 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 std::vector<Variant> planted() {
   return {{"right", "no mistake", create<Mistake::none>},
           {"half_jacobian", "Phi_q without its factor 2", create<Mistake::half_jacobian>},
+          {"half_mass", "M without its upper half", create<Mistake::half_mass>},
           {"lambda_first", "lambda before the residual", create<Mistake::lambda_first>},
           {"hidden_lambda_first", "the same, unseen", create<Mistake::lambda_first, false>},
-          {"no_curvature", "a projected without (Phi_q)' v", create<Mistake::no_curvature>}};
+          {"lambda_sign", "lambda - alpha Phi", create<Mistake::lambda_sign>},
+          {"no_curvature", "a projected without (Phi_q)' v", create<Mistake::no_curvature>},
+          {"always_both", "a is projected unasked", create<Mistake::always_both>}};
 }
 
 }  // namespace mbs::test
