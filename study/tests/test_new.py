@@ -22,7 +22,8 @@ def repository(tmp_path, monkeypatch):
 @pytest.mark.parametrize("library", new.LIBRARIES)
 def test_what_it_writes_compiles_without_a_warning(repository, library, capsys):
     assert new.new(["my_first", "--library", library]) == 0
-    assert "mbs bench" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "mbs bench" in said and "study/add my_first" in said
     folder = repository / "my_first"
     assert sorted(path.name for path in folder.iterdir()) == [
         "CMakeLists.txt", "README.md", "implementation.cpp", "simulation.cpp", "simulation.hpp"]
@@ -45,7 +46,7 @@ def test_it_is_the_last_of_the_list(repository):
 @pytest.mark.parametrize("name, words", [("Upper", "is no name"), ("1st", "is no name"), ("a-b", "is no name"),
                                          ("../evil", "is no name"),
                                          *((name, "of C\\+\\+ or of the harness") for name in (
-                                             "class", "int", "namespace", "std", "null", "reference", "limit", "control",
+                                             "class", "int", "namespace", "std", "available", "null", "reference", "limit", "control",
                                              "main", "mbs", "mbs_registry", "a__b", "all", "test")),
                                          ("eigen_dense", "exists already")])
 def test_what_cannot_be_a_folder_is_refused(repository, name, words):

@@ -14,7 +14,7 @@ export extern false float for friend goto if inline int long mutable namespace n
 public register reinterpret_cast requires return short signed sizeof static static_assert static_cast struct switch template this thread_local
 throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
 TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
-         "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
+         "registry", "implementation", "simulation", "available", "unavailable"}  # names of the harness, of C++ and of CMake
 EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
 COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
 IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
@@ -40,7 +40,7 @@ def new(arguments):
     options = parser.parse_args(arguments)
     folder = ROOT / "implementations" / options.name
     if not NAME.fullmatch(options.name):
-        raise StudyError(f"'{options.name}' is no name: a letter from a to z, then letters, digits or _")
+        raise StudyError(f"'{options.name}' is no name: a letter from a to z, then such letters, digits or _")
     if options.name in KEYWORDS | TAKEN or re.match("(mbs|implementation)_", options.name) or "__" in options.name:
         raise StudyError(f"'{options.name}' is a name of C++ or of the harness: take another name")
     if folder.exists() or options.name in listed():
@@ -62,12 +62,13 @@ def new(arguments):
                 f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
                 "build/mbs reference four-bar:1 --moved": "the reference's numbers",
                 f"build/mbs check --implementation {options.name}": "the whole gate",
-                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees"}
+                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees",
+                f"study/add {options.name}": "beside the leaders, once study/run --part map has run on this machine"}
     print(f"implementations/{options.name}/ is written and in the list. Next:")
     for command, what in commands.items():
         print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
     print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
-bottom, and climb the ladder after each function.""")
+bottom, and climb the ladder after each function. CONTRIBUTING.md has the tests, and what a pull request shows.""")
     return 0
 
 
