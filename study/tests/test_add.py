@@ -58,8 +58,10 @@ def folder(tmp_path, monkeypatch):
 def measure(folder, monkeypatch, times=None, name=NEW):
     if times:
         monkeypatch.setenv("FAKE_NEW", f"{NEW}={times}")
-    add.add([name, "--to", str(folder), "--wait"])
-    return pandas.read_csv(folder / "added" / f"{name.replace('/', '.')}.csv", keep_default_na=False)
+    status = add.add([name, "--to", str(folder), "--wait"])
+    table = pandas.read_csv(folder / "added" / f"{name.replace('/', '.')}.csv", keep_default_na=False)
+    assert status == (0 if "ok" in set(table.status) else 1)
+    return table
 
 
 def test_a_faster_newcomer_takes_the_cells(folder, monkeypatch, capsys):
@@ -185,6 +187,14 @@ def test_who_is_not_timed_is_told_by_the_term_that_is_not_served_not_by_its_plac
     add.tell(shelf.table(rows, "added"), tmp_path, NEW)
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("unsupported")]
     assert lines == ["unsupported: it does not serve dots: robot:0, robot:1", "unsupported: it does not serve springs: robot:2"]
+
+
+def test_reasons_that_differ_in_numbers_are_told_once(tmp_path, capsys):
+    rows = [{"part": "map", "scene": scene, "layer": "all", "status": "disagrees", "reason": reason, "hands": "stays"} for scene, reason in (
+        ("four-bar:4", "lock-step: a differs by 2.1e-05 of 1e-10"), ("four-bar:8", "lock-step: a differs by 31 of 1e-10"), ("grid:4", "free-running: x"))]
+    add.tell(shelf.table(rows, "added"), tmp_path, NEW)
+    assert [line for line in capsys.readouterr().out.splitlines() if line.startswith("disagrees")] == [
+        "disagrees: lock-step: a differs by 2.1e-05 of 1e-10 (or alike): four-bar:4, four-bar:8", "disagrees: free-running: x: grid:4"]
 
 
 @pytest.mark.parametrize("name, status", [("bad/crash", "crashed"), ("bad/passes", "disagrees"), ("bad/nan", "diverged")])

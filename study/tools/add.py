@@ -30,12 +30,14 @@ NOT_TIMED = ("dropped", "slower", "timeout")  # statuses of who might still be t
 PATIENT = 8     # times the slowest rival's stretch: whose first takes longer is left out
 RESULTS = ROOT / "results"
 LOG = RESULTS / "local" / "add.log"  # of setting up
+NUMBER = r"\d[\d.]*(e[-+]?\d+)?"  # of a reason
 SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
 
 
 def add(arguments):
     parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine and libraries: "
-                    "the newcomer beside the leaders of each cell of its mechanisms and its map, in fresh common processes.")
+                    "the newcomer beside the leaders of each cell of its mechanisms and its map, in fresh common processes.",
+                    epilog="Exit status: 0, or 1 if it could be timed nowhere.")
     parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
     parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest of this machine and build in results/ and results/local)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
@@ -52,7 +54,7 @@ def add(arguments):
             need_records(opened(folder))
             table = measured(folder, options.name, known)
     tell(table, folder, options.name)
-    return 0
+    return 0 if (table.status == "ok").any() else 1
 
 
 def newest(known):
@@ -270,7 +272,9 @@ def tell(table, folder, name):
                   + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
         others = rows.drop(ranked.index)
         others["reason"] = others.reason.str.replace(": the scene has .*", "", regex=True)  # of a term: where, in each of them
-        for (status, reason), left in others.groupby(["status", "reason"], sort=False):
+        alike = others.reason.str.replace(NUMBER, "", regex=True)
+        for (status, _), left in others.groupby(["status", alike], sort=False):
+            reason = left.reason.iloc[0] + " (or alike)" * (left.reason.nunique() > 1)
             print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
         for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
             print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")
