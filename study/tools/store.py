@@ -92,13 +92,17 @@ def _lacking(kept):
     return [f"{kept.folder} lacks {part}: a stored set has all parts" for part in parts() if part not in kept.facts["parts"]]
 
 
+def need_commit(where, commit):
+    """StudyError naming `where` if what is there is of a commit that this repository does not have."""
+    if subprocess.run(["git", "cat-file", "-e", f"{commit}^{{commit}}"], cwd=ROOT, capture_output=True).returncode != 0:
+        raise StudyError(f"{where}: it is of {commit}, which is no commit of this repository")
+
+
 def need_whole(studyset):
     """StudyError naming what is not finished, or not as it was measured."""
     for fault in _lacking(studyset):
         raise StudyError(fault)
-    commit = studyset.facts["context"].get("commit")
-    if subprocess.run(["git", "cat-file", "-e", f"{commit}^{{commit}}"], cwd=ROOT, capture_output=True).returncode != 0:
-        raise StudyError(f"{studyset.folder / 'set.json'}: it is of {commit}, which is no commit of this repository")
+    need_commit(studyset.folder / "set.json", studyset.facts["context"].get("commit"))
     need_records(studyset)
     for part, columns in columns_of(studyset.profile, studyset.facts["parts"]).items():
         for column in columns:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
 
 namespace mbs {
@@ -11,8 +12,7 @@ namespace {
 /// Whether all lengths times a number make the same mechanism, larger: nothing has a length of its
 /// own, such as a unit vector or a driver.
 bool can_grow(const Model& model) {
-  return model.driven_points().empty() && model.driven_values().empty() &&
-         std::ranges::none_of(model.points(), &Point::is_vector);
+  return !is_driven(model) && std::ranges::none_of(model.points(), &Point::is_vector);
 }
 
 /// The same curve over numbers `wider` times as large, its values `higher` times as large.

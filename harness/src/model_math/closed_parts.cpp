@@ -206,10 +206,6 @@ class Pattern {
   std::vector<int> col_of_, row_of_;  // the matching; -1: none
 };
 
-bool is_driven(const Model& model) {
-  return !model.driven_points().empty() || !model.driven_values().empty();
-}
-
 ConstraintBlock sorted(ConstraintBlock block) {
   std::ranges::sort(block.rows);
   std::ranges::sort(block.cols);

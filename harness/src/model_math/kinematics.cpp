@@ -409,6 +409,10 @@ double energy(const Model& model, double t, Coordinates q, Coordinates v) {
   return kinetic_energy(model, v) + potential_energy(model, t, q);
 }
 
+bool is_driven(const Model& model) {
+  return !model.driven_points().empty() || !model.driven_values().empty();
+}
+
 bool is_conservative(const Model& model) {
   const auto damped = [](const auto& spring) { return spring.damping != 0.0; };
   const auto keeps = [](const auto& law) { return is_conservative(law.law); };
@@ -416,7 +420,7 @@ bool is_conservative(const Model& model) {
          std::ranges::none_of(model.torsion_springs(), damped) &&
          std::ranges::all_of(model.force_laws(), keeps) &&
          std::ranges::all_of(model.torque_laws(), keeps) && model.couples().empty() &&
-         model.driven_points().empty() && model.driven_values().empty();
+         !is_driven(model);
 }
 
 }  // namespace mbs

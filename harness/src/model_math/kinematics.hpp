@@ -66,6 +66,9 @@ double potential_energy(const Model& model, double t, std::span<const double> q)
 /// Kinetic plus potential energy, J.
 double energy(const Model& model, double t, std::span<const double> q, std::span<const double> v);
 
+/// Whether a point or a row follows a function of time.
+bool is_driven(const Model& model);
+
 /// Whether kinetic plus potential energy is constant: no damper, couple or driver, no law over a
 /// rate or with a factor of time.
 bool is_conservative(const Model& model);

@@ -66,11 +66,9 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
     matrices.push_back(std::move(part.block));
     parts_.push_back({std::move(part.all), std::move(part.needed)});
   }
-  const bool is_driven =
-      !scene.model.driven_points().empty() || !scene.model.driven_values().empty();
   for (ConstraintBlock& part : parts.free) {
     matrices.push_back(part);
-    parts_.push_back({std::move(part), {}, is_driven});
+    parts_.push_back({std::move(part), {}, is_driven(scene.model)});
   }
   if (!is_needed()) return;
   find_lengths();

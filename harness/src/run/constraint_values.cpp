@@ -7,8 +7,8 @@
 namespace mbs {
 
 ConstraintValues::ConstraintValues(const Model& model) : model_(&model) {
-  const bool is_driven = !model.driven_points().empty() || !model.driven_values().empty();
-  if (is_driven || model.dot_constraints().size() != static_cast<std::size_t>(model.constraints()))
+  if (is_driven(model) ||
+      model.dot_constraints().size() != static_cast<std::size_t>(model.constraints()))
     return;
   const auto place_of = [&](int index) {
     const Point& point = model.points()[static_cast<std::size_t>(index)];

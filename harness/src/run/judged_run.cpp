@@ -50,7 +50,7 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
       local_errors_(scene, judge_.length(), watch_.passes_on()),
       adds_local_errors_(watch_.freedoms() > 0),
-      is_driven_(!scene.model.driven_points().empty() || !scene.model.driven_values().empty()) {}
+      is_driven_(is_driven(scene.model)) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);

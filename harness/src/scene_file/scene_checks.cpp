@@ -80,15 +80,14 @@ class MobilityCheck {
   void check_mobility() const {
     const int n = model_.variables();
     const auto rank = jacobian_rank(model_, model_.initial_position());
-    const bool is_driven = !model_.driven_points().empty() || !model_.driven_values().empty();
-    if (rank && *rank == n && !is_driven) {
+    if (rank && *rank == n && !is_driven(model_)) {
       refuse(
           where_,
           fmt::format("the scene cannot move: its constraints hold all {} coordinates (rank {} at "
                       "the start), allowed is at least one degree of freedom",
                       n, *rank));
     }
-    if (rank && *rank == n - 1 && *rank < model_.constraints() && !is_driven) {
+    if (rank && *rank == n - 1 && *rank < model_.constraints() && !is_driven(model_)) {
       refuse_second_order();
     }
     if (!rank && model_.constraints() > n) {
