@@ -46,7 +46,7 @@ def run(lab, column):
         else:
             timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
             timed[-1].time(lab.settings["processes"])
-    _phases(lab, timed[0])  # what is small comes before `again`, which takes all that is left
+    _phases(lab, timed)  # what is small comes before `again`, which takes all that is left
     _operations(lab, natural)
     _seeds(lab, timed)
     for one in timed:
@@ -69,8 +69,8 @@ def _seeds(lab, timed):
 
 def _phases(lab, timed):
     asked = lab.settings["phases"]
-    if timed.scene.variables in asked["columns"]:
-        measure(lab, timed.scene.name, [one for one in timed.costs if one.ranked], processes=asked["processes"],
+    for one in timed if timed[0].scene.variables in asked["columns"] else ():
+        measure(lab, one.scene.name, [cost for cost in one.costs if cost.ranked], processes=asked["processes"],
                 repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"])
 
 
