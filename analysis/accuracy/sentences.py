@@ -48,7 +48,7 @@ def of_layer(rows, layer):
     """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
     (who, often), (setting, with_it) = (next(iter(names.value_counts().items())) for names in (rows.implementation, rows.setting))
     text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
-            f"{int(rows.settled.sum())} of these are settled. The best setting is most often {setting}, in {with_it}.")
+            f"{int(rows.settled.sum())} of these are settled. The best setting is most often “{setting}”, in {with_it}.")
     if len(largest := rows[rows.variables == rows.variables.max()].sort_values("required")) > 1:
         fine, coarse = largest.iloc[0], largest.iloc[-1]
         text += (f" With n = {fine.variables:.0f}, {number(fine.required)} m instead of {number(coarse.required)} m takes "

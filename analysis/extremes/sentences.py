@@ -31,7 +31,7 @@ def _battery(table):
     text += " Silent wrongs:" * bool(entries) + "".join(f" {one['kind']}, {one['mechanism']}: {one['commands'][0]}." for one in entries[:MOST])
     yield {"anchor": "battery", "text": text + (f" {len(entries) - MOST} more on the page." if len(entries) > MOST else "")}
     if lost := gather((axis, value) for axis, value, _ in nobody(battery.extreme(runs))):
-        yield {"anchor": "nobody", "text": "Nobody is right, in any setting tried, at " + "; ".join(
+        yield {"anchor": "nobody", "text": "No run is right, in any setting that was tried, with " + "; ".join(
             f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
 
 
@@ -60,5 +60,5 @@ def _pivots(table):
     if table.empty or "guarded" not in overhead(table):
         return
     worst = table.groupby("strategy").error_worst.max()
-    yield {"anchor": "pivots", "text": f"Solves with pivots that are kept have backward errors of up to {number(worst['refactor'], 1)}, "
-           f"with a guard of at most {number(worst['guarded'], 1)}, for {number(overhead(table)['guarded'].median(), 3)} times the time."}
+    yield {"anchor": "pivots", "text": f"Solves with kept pivots have backward errors of up to {number(worst['refactor'], 1)}. With a guard they stay within "
+           f"{number(worst['guarded'], 1)}; it takes {number(overhead(table)['guarded'].median(), 3)} times as long."}

@@ -15,25 +15,25 @@ def _multiples(rows, view):
     """The fastest library and the fastest of our own, each over the sizes that it was timed at."""
     sides = {"the fastest library": rows[rows.implementation.isin(view.registry.libraries)],
              "the fastest code of our own": rows[rows.implementation.isin(view.registry.own)]}
-    said = [f"{who[0].upper()}{who[1:]} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})"
+    said = [f"{who} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})"
             for who, mine in sides.items() for best in [mine.sort_values("multiple").drop_duplicates("loops")] if len(best)]
-    return [{"text": f"Beside code written for the N-four-bar alone: {'. '.join(said)}.", "anchor": "sizes"}] if said else []
+    return [{"text": f"Beside code written for the N-four-bar alone, {', '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
 def _leads(leads):
     rows = leads[(leads.status == "ok") & leads.kind.isin(KINDS)]
     found = [f"{name} is shown to be faster than the fastest library in {(mine.low > 1).sum()} of {len(mine)} scenes that it serves "
-             f"and slower in {(mine.high < 1).sum()} ({span(mine.lead)} times)" for name, mine in rows.groupby("implementation", sort=False)]
-    return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
+             f"and slower in {(mine.high < 1).sum()} ({span(mine.lead)} times as fast)" for name, mine in rows.groupby("implementation", sort=False)]
+    return [{"text": f"{'. '.join(found)}.", "anchor": "ahead"}] if found else []
 
 
 def _many(batches, sweeps):
     """Batches and sweeps, one answer."""
-    gains = [f"{span(mine.gain)} times with {sets:.0f} sets (single processes {span([mine.least.min(), mine.most.max()])})"
+    gains = [f"{span(mine.gain)} times with {sets:.0f} sets (in single processes {span([mine.least.min(), mine.most.max()])})"
              for sets, mine in batches[batches.status == "ok"].groupby("sets")]
-    rates = [f"of {row.scene} {number(row.gain)} times as many lanes a second as one job, a million lanes in {number(row.million_s)} s"
+    rates = [f"{row.scene}: {number(row.gain)} times as many lanes a second as by one job, a million lanes in {number(row.million_s)} s"
              for row in sweeps[(sweeps.status == "ok") & (sweeps.jobs == 2)].itertuples()]
-    said = [f"{what}: {'; '.join(found)}." for what, found in (("Simulations side by side gain, over those alone", gains),
+    said = [f"{what}: {'; '.join(found)}." for what, found in (("Gain of simulations side by side over single ones", gains),
                                                                ("Sweeps by two jobs, projected from fewer lanes", rates)) if found]
     return [{"text": " ".join(said), "anchor": "batches" if gains else "sweeps"}] if said else []
 

@@ -12,17 +12,29 @@ def answers(tables, view):
     groups = summary.by_size(results, libraries)
     if all(group["kind"] == "none" for group in groups):
         return [{"text": "Nothing was timed: no library took part or agreed with the reference.", "anchor": "losses"}]
-    found = [{"text": f"At the four-bar's own fill: {' '.join(by_outcome(groups))}", "anchor": "answer"}]
-    if dense := [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]:
-        found.append({"text": f"As the tangent fills, dense libraries overtake: {', '.join(dense)}.", "anchor": "maps"})
+    found = [{"text": f"The four-bar at its own fill. {' '.join(by_outcome(groups))}", "anchor": "answer"}]
+    dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
+    said = [f"the paper's dense versions overtake the sparse libraries at {', '.join(dense)}"] * bool(dense) + _hybrid(tables["cells"])
+    if said:
+        found.append({"text": f"As the tangent fills, {'; '.join(said)}.", "anchor": "maps"})
     if whole := [row for row in summary.prices(results, libraries) if not row["failed"] and row["cells"] == row["of"]]:
-        first = whole[0]
-        found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
-                              f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
+        first, safest = whole[0], min(whole, key=lambda row: row["worst"])
+        found.append({"text": f"The single library that costs least is {_price(first)}, over {first['of']} cells."
+                              + (f" The one with the least worst case is {_price(safest)}." if safest != first else ""), "anchor": "regret"})
     if control := said(tables["controls"]):
         found.append({"text": control, "anchor": "carries"})
-    found.append({"text": f"The paper's claims: {told(tables['claims'])}.", "anchor": "claims"})
+    found.append({"text": f"Claims of the paper of 2008 (T, F: its tables and figures; C: its text): {told(tables['claims'])}.", "anchor": "claims"})
     return found
+
+
+def _hybrid(cells):
+    filled = cells[(cells.layer == "libraries") & cells.fill_asked.notna() & (cells.winner != "")]
+    count = filled.equivalent.str.contains("hybrid_dense/").sum()
+    return [f"sparse assembly with a dense solver (hybrid_dense) leads, or is as fast, in {count} of {len(filled)} filled cells"] if count else []
+
+
+def _price(row):
+    return f"{row['implementation']}: {row['mean']:.2f} times the best on average, {row['worst']:.3g} times at worst"
 
 
 def by_outcome(groups, what="library"):

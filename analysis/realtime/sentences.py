@@ -8,7 +8,7 @@ def answers(tables, view):
     searched = largest[(largest.scheme == "penalty") & largest.largest.notna()]
     for step in view.settings["steps"]:
         rows = searched[searched.step == step]
-        layers = {"libraries": rows[~rows.implementation.isin(own)], "own code": rows[rows.implementation.isin(own)]}
+        layers = {"the libraries": rows[~rows.implementation.isin(own)], "our own code": rows[rows.implementation.isin(own)]}
         if said := [_best(name, one) for name, one in layers.items() if len(one)]:
             found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'. '.join(said)}."})
     return [*found, *_clean(tables["steps"], tables["machine"], view), *_judging(tables["judging"])] or [
@@ -32,16 +32,16 @@ def _judging(judging):
     if known.empty:
         return []
     beyond, most = known[~known.held.astype(bool)], known.loc[(known.share / known.bound).idxmax()]
-    held = f"not held, {len(beyond)} scenes ({', '.join(beyond.scene)})" if len(beyond) else "held"
+    held = f"not held on {', '.join(beyond.scene)}" if len(beyond) else "held"
     return [{"anchor": "judging", "text": f"Judging the motion costs at most {number(100 * known.share.max(), 2)} % of a step on {len(known)} scenes, beside "
-             f"the fastest implementation. Bound “{number(100 * BOUNDS[True])} % from {LARGE} variables on, {number(100 * BOUNDS[False])} % below”: {held}. "
+             f"the implementation with the fastest steps. Bound “{number(100 * BOUNDS[True])} % from {LARGE} variables on, {number(100 * BOUNDS[False])} % below”: {held}. "
              f"Nearest to it: {most.scene}, {number(100 * most.share, 2)} %."}]
 
 
 def _best(layer, rows):
     row = rows.loc[rows.largest.idxmax()]
     if not row.largest:
-        return f"None of the {layer} keeps up with any size"
+        return f"Of {layer} none keeps up with any size"
     text = (f"Of {layer} {row.implementation} keeps up with N = {number(row.largest, 4)} ({row.missed} of {row.steps} steps missed, "
             f"{row.null_missed} lost by the null process)")
     if row.next == row.next:

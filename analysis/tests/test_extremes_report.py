@@ -237,7 +237,7 @@ def test_page_and_answers_of_all_columns():
     assert "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
     assert said[0].startswith("In 5 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
-    assert any("right most often" in text for text in said) and any("1.2 times the time" in text for text in said)
+    assert any("right most often" in text for text in said) and any("takes 1.2 times as long" in text for text in said)
     assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
 

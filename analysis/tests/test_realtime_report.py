@@ -97,9 +97,9 @@ def test_figures_page_and_answers():
     known = page.context(found, VIEW)
     assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"] == []
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert texts[0] == ("Steps of 1 ms: Of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
+    assert texts[0] == ("Steps of 1 ms: Of the libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
                         "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
-                        "Of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
+                        "Of our own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
     assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 of the deadlines of 1 ms in 1.3 s."]
 
 
@@ -126,7 +126,7 @@ def test_judging_is_held_to_its_bound_beside_the_fastest():
     assert (large["share"], large["bound"], large["held"]) == (pytest.approx(0.03), 0.02, False)
     assert lost["share"] != lost["share"] and lost["status"] == "diverged"
     [answer] = sentences.answers(found, VIEW)
-    assert "not held, 1 scenes (large)" in answer["text"] and answer["anchor"] == "judging"
+    assert "not held on large." in answer["text"] and answer["anchor"] == "judging"
     assert ": held." in sentences.answers(made(*runs[:4]), VIEW)[0]["text"]
 
 

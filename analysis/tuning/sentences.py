@@ -8,7 +8,7 @@ def answers(tables, view):
         return [{"text": "Not measured: nothing that was tried was timed.", "anchor": ""}]
     slower, faster = rows[rows.low > 1], rows[rows.high < 1]
     most = rows.loc[rows.ratio.idxmax()]
-    text = (f"Of {len(rows)} times with other settings ({rows.alternative.nunique()} settings of {rows.base.nunique()} variants on {rows.scene.nunique()} scenes) "
+    text = (f"{rows.alternative.nunique()} other settings of {rows.base.nunique()} variants were timed on {rows.scene.nunique()} scenes. Of {len(rows)} times "
             f"{len(slower)} are shown to be longer than with the variant's own, {len(faster)} shorter; the longest is {most.alternative} on {most.scene}, "
             f"{number(most.ratio)} times the time")
     if len(faster):
