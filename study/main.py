@@ -39,7 +39,7 @@ def main(arguments):
 
 def run(arguments):
     parser = Parser(prog="study/run", description="Runs the study: verifies, measures, draws; ends in one site.",
-                    epilog="Interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
+                    epilog="If it was interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
     parser.add_argument("--profile", default="quick", help=f"how much: {', '.join(profiles.names())} (quick)")
     parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
     parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION", help="only these implementations (folder or folder/variant)")

@@ -38,9 +38,8 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
                  "folder or folder/variant, several by commas or repeated (default: all but "
-                 "examples and what was "
-                 "tried, and the control "
-                 "null/null that does nothing); NAME+twin is a second instance of a variant")
+                 "examples and what was tried; without a summary also the control null/null, "
+                 "which does nothing); NAME+twin is a second instance of a variant")
       ->allow_extra_args(false)
       ->delimiter(',');
   step.add_to(app);
@@ -50,13 +49,13 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
                  "start of the stretch of the four-bar, s (default: centred on the first singular "
                  "position); other scenes start at 0");
   app.add_option("--slower-than", request.slower_than,
-                 "leave out whoever takes more than F times as long as the fastest (default: time "
-                 "all)");
+                 "leave out whoever takes more than this many times as long as the fastest "
+                 "(default: time all)");
   app.add_option("--patience", request.patience,
-                 "leave out whose first stretch takes longer than S seconds (default: wait)");
+                 "leave out whose first stretch takes longer than this, s (default: wait)");
   app.add_flag("--summary", shown.summary,
                fmt::format("a short answer soon, for 80 columns: who is fastest, libraries and own "
-                           "code apart, and who was left out why; --slower-than is {:g} times the "
+                           "code apart, who was left out, and why; --slower-than is {:g} times the "
                            "fastest of its layer, --patience {:g} s (default on a terminal)",
                            kSummarySlowerThan, kSummaryPatience));
   app.add_flag("--no-summary", shown.rows,
@@ -64,12 +63,12 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
   app.add_option("--seed", request.seed, "of the order of turns (default: 1)");
   app.add_flag("--phases", request.phases, "also give the share of time of each phase");
   app.add_flag("--operations", request.operations,
-               "instead of steps, time Jacobian evaluation, rank-k update and matrix addition of "
-               "the variants that offer them one by one");
+               "instead of steps, time Jacobian evaluation, rank-k update and matrix addition, "
+               "each by itself, of the variants that offer them");
   app.add_flag(
       "--batch", request.batch,
-      "instead of single simulations, time parameter sets in batches of as many as a variant is "
-      "best given, and alone: step_us and alone_us are of one of them, gain is their ratio");
+      "instead of single simulations, time parameter sets in batches, as large as suits the "
+      "variant, and alone: step_us and alone_us are of one set, gain is their ratio");
   app.add_option(
       "--sets", request.sets,
       "of --batch: parameter sets, spread evenly over a range of 28 % in masses, of 14 % in "

@@ -185,8 +185,9 @@ void add_check_command(CLI::App& app, int& status) {
       ->allow_extra_args(false)
       ->delimiter(',');
   options->step.add_to(*command);
-  command->add_option("--steps", options->steps,
-                      "of the motion that is compared, at most; fewer from 500 variables up")
+  command
+      ->add_option("--steps", options->steps,
+                   "steps that are compared, at most; fewer from 500 variables up")
       ->capture_default_str()
       ->check(CLI::Range(16, 800));
   command->add_option("--time-limit", options->time_limit, "s a scene and implementation")

@@ -102,7 +102,7 @@ void StepOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   add_precision_option(command, settings.precision);
   command.add_flag("--geometric-stiffness", settings.geometric_stiffness,
-                   "add what the constraint forces change by to the tangent, Eq. (16)");
+                   "add to the tangent how constraint forces change with q, Eq. (16)");
   add_blas_option(command);
 }
 
@@ -176,7 +176,8 @@ int run_program(int argc, char** argv) {
   add_check_command(app, status);
   add_reference_command(app, status);
   add_limit_command(app, status);
-  app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
+  app.add_subcommand("bench",
+                     "time implementations on scenes: who is fastest (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) {
     refuse_misread(*command);
     command->footer(kExits);

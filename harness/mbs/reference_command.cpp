@@ -164,7 +164,7 @@ void add_reference_command(CLI::App& app, int& status) {
   command->add_option("--step", options->settings.step, "time step, s")->capture_default_str();
   command->add_option("--penalty", options->penalty, "penalty factor alpha, or 'auto'")
       ->capture_default_str();
-  command->add_option("--after", options->after, "steps from the start to the state that it is at")
+  command->add_option("--after", options->after, "steps from the start to the state that is shown")
       ->capture_default_str();
   command->add_flag("--moved", options->moved,
                     "move that state off its constraints, as check --ladder does");

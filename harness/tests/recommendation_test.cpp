@@ -105,7 +105,8 @@ TEST(Recommendation, NearestSceneAndWhatIsOutside) {
 TEST(Recommendation, Text) {
   const std::string text = recommendation_text(recommended(described("four-bar:2")));
   EXPECT_EQ(text,
-            "take this             b/small, penalty form: 4 us a step (3 to 6), measured on a "
+            "take this             b/small, penalty form: 4 us a step (3 to 6), predicted from "
+            "times on a "
             "machine\n"
             "  why                 the least of those compared: a/large 8 us, "
             "b/small 4 us; penalty form, as the automatic penalty factor is stable at "

@@ -35,8 +35,8 @@ SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
 
 
 def add(arguments):
-    parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine and libraries: "
-                    "the newcomer beside the leaders of each cell of its mechanisms and its map, in fresh common processes.",
+    parser = Parser(prog="study/add", description="Times a new or changed implementation beside the leaders of a set, in each cell of the set's "
+                    "mechanisms and map, in fresh common processes. The set must be of the same machine and libraries.",
                     epilog="Exit status: 0, or 1 if it could be timed nowhere.")
     parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
     parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest of this machine and build in results/ and results/local)")

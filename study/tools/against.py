@@ -27,8 +27,8 @@ def against(arguments):
     parser.add_argument("revision", help="of git, for instance HEAD~1")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these implementations (folder or folder/variant)")
     parser.add_argument("--scenes", nargs="+", metavar="SCENE", default=[
-        "four-bar:10", "four-bar:40", "four-bar:79", "four-bar:499"], help="four-bar:10 ... 499")
-    parser.add_argument("--rounds", type=rounds, default=4, help="of two processes of each program (4)")
+        "four-bar:10", "four-bar:40", "four-bar:79", "four-bar:499"], help="(four-bar:10 four-bar:40 four-bar:79 four-bar:499)")
+    parser.add_argument("--rounds", type=rounds, default=4, help="each has two processes of each program (4)")
     parser.add_argument("--results", type=directory, metavar="DIR", help="(results/local/against-REVISION)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)

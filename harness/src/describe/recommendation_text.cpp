@@ -64,10 +64,11 @@ std::string recommendation_text(const json& d) {
   if (list.empty()) return text_line("take this", d["no_recommendation"]);
   const json &rule = d["rule"], &nearest = d["nearest"];
   const json library = best_of(list, "library"), own = best_of(list, "own");
-  std::string text = text_line(
-      "take this", library.is_null() ? "nothing of a library that was measured"
-                                     : fmt::format("{}, measured on {}", variant_text(library),
-                                                   rule["machine"].get<std::string>()));
+  std::string text =
+      text_line("take this", library.is_null() ? "no library that was measured serves this"
+                                               : fmt::format("{}, predicted from times on {}",
+                                                             variant_text(library),
+                                                             rule["machine"].get<std::string>()));
   text += text_line("  why", why_text(d));
   text += text_line("  how sure", certainty_text(rule));
   text += text_line(

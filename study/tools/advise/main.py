@@ -29,7 +29,7 @@ def advise(arguments):
     parser = Parser(prog="study/advise", description="Which implementation, step and settings simulate SCENE with positions as accurate as E, "
                     "in the least time? Runs pilots of that very scene; takes about a minute. Exit status 1: no setting is good enough.")
     parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
-                        "with --validate kinds of its list and any scenes")
+                        "with --validate: kinds of mechanisms from its list, or any scenes")
     parser.add_argument("--error", type=positive, metavar="E", help="largest position error of any point over the whole time, m")
     parser.add_argument("--deadline-us", type=positive, metavar="D", help="99 %% of the steps must be done within D microseconds")
     parser.add_argument("--step", type=seconds, metavar="S", help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed "
