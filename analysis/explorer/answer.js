@@ -87,7 +87,7 @@ function fillNear(found, mine) {
                 [["contender", (row) => row.name], ["", (row) => GROUPS[row.group]], ["time ÷ the fastest's", (row) => row.text], ["µs a step", (row) => short(row.step)],
                  ...yours(mine)], null, found.near.length);
   });
-  if (!found.near.length) target.append(element("p", {}, "Nobody of those that are left was measured on such a mechanism."));
+  if (!found.near.length) target.append(element("p", {}, "None of those that are left was measured on such a mechanism."));
 }
 
 function fillPredicted(found, state) {
@@ -120,7 +120,7 @@ function fillError(found, state) {
   target.replaceChildren();
   if (!state.error) return void target.append(element("p", {}, "No error was asked for: it decides step and setting."));
   if (!found.error?.ranking)
-    return void target.append(element("p", {}, found.error ? `Nobody of those that are left was seen to reach ${short(state.error)} m.`
+    return void target.append(element("p", {}, found.error ? `None of those that are left was seen to reach ${short(state.error)} m.`
                                                            : "No errors were measured in this set."));
   const {curve, ranking} = found.error, name = (point) => `${point.name}, ${point.setting}, step ${short(1e3 * point.step)} ms`;
   const raw = (point) => [["process", "s a simulated second", "record"],
@@ -152,7 +152,7 @@ function elsewhere(found, contest, winner) {
 
 function fillAnswer(found, state) {
   const lines = [], [first, second] = found.near, bold = (name) => element("b", {}, name), [best] = found.predicted, point = found.error?.ranking?.winner;
-  if (!first) lines.push(["Nobody of those that are left was measured on such a mechanism."]);
+  if (!first) lines.push(["None of those that are left was measured on such a mechanism."]);
   for (const {contest, ranking} of found.near) {
     const others = ranking.equivalent.filter((name) => name !== ranking.winner), known = ranking.decided || ranking.settled;
     lines.push([bold(ranking.winner), ` ${known ? "is fastest" : "leads, not decided,"} on ${about(contest)}, measured: `

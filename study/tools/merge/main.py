@@ -23,7 +23,7 @@ def merge(arguments):
     parser.add_argument("sets", nargs="+", type=directory, metavar="SET", help="directories of two sets or more")
     parser.add_argument("--to", type=directory, default=ROOT / "results" / "local" / "merged", metavar="DIR",
                         help="where page and table go (results/local/merged)")
-    parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: in how many cells do the merged sets expect its winner?")
+    parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: in how many decided cells does it have the same winner?")
     parser.add_argument("--other-builds", action="store_true", help="sets of other commits, libraries or changed trees too: do they say the same?")
     options = parser.parse_args(arguments)
     if len(options.sets) < 2:
