@@ -112,7 +112,7 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
   text +=
       fmt::format("  position error max     {}\n",
                   figure(summary.position_error_max, " m",
-                         "not known: no exact motion of this scene is (--half-step estimates)"));
+                         "not known: this scene has no exact motion (--half-step estimates it)"));
   if (summary.position_error_estimate) {
     text += fmt::format("  estimated error max    {}\n",
                         figure(summary.position_error_estimate, " m, by half the step"));
