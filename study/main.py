@@ -38,12 +38,12 @@ def main(arguments):
 
 
 def run(arguments):
-    parser = Parser(prog="study/run", description="Runs the study: verifies, measures, draws; ends in one site.",
+    parser = Parser(prog="study/run", description="Runs the study: checks that all agree, measures, draws one site of pages.",
                     epilog="If it was interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
     parser.add_argument("--profile", default="quick", help=f"how much: {', '.join(profiles.names())} (quick)")
     parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
     parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION", help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--results", type=directory, metavar="DIR", help="results directory (results/local/PROFILE)")
+    parser.add_argument("--results", type=directory, metavar="DIR", help="results directory (results/local/PROFILE, with --only PROFILE-IMPLEMENTATION)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
     parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")

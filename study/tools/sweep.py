@@ -38,7 +38,7 @@ def sweep(arguments):
     parser.add_argument("table", help="TABLE.csv or TABLE.csv.gz")
     parser.add_argument("--output", metavar="FILE.png", help="the picture (TABLE.png, here)")
     parser.add_argument("--of", metavar="COLUMN", help="the result that is shown (the first output, else the violation)")
-    parser.add_argument("--over", nargs=2, metavar="PARAMETER", help="of the surface (the first two that vary)")
+    parser.add_argument("--over", nargs=2, metavar="PARAMETER", help="the two of the surface (the first two that vary)")
     parser.add_argument("--cluster", metavar="PROFILE", help="make the table first, on a cluster (study/cluster/README.md): "
                         "study/sweep TABLE --cluster slurm --parts K -- SCENE and what mbs sweep takes")
     parser.add_argument("--parts", type=int, metavar="K", help=f"jobs of its array ({PARTS})")
