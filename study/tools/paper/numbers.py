@@ -121,7 +121,7 @@ def _controls(known):
     found = machine.controls(known)  # of all by which the set is judged
     if not found["pairs"]:
         return "No contender was timed against itself in this set, so how often it decides falsely is not measured."
-    return (f"As a control, {found['pairs']} times a contender was timed against itself: {found['false']} were decided, which is false; the ratio "
+    return (f"As a control, {found['pairs']} times a contender was timed against itself: {found['false']} were falsely decided; the ratio "
             f"furthest from one is {number(found['widest'])}." + ("" if found["sound"] else " This is more than chance allows: the set is no evidence."))
 
 

@@ -116,7 +116,7 @@ def _machine(one):
     found, cells, control = real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
     measured = machine.rates(one)
     return {"processor": one.context["cpu_model"], "measured on": one.facts["date"][:10],
-            "pairs timed against themselves, of these decided, which is false": f"{control['pairs']}, {control['false']}",
+            "pairs timed against themselves, of these falsely decided": f"{control['pairs']}, {control['false']}",
             "mechanisms that are settled": f"{found['said'].text} of {found['mechanisms'].text}",
             "library that is fastest or as fast most often": f"{found['leader'].text} on {found['leads'].text}",
             "best single library: mean and worst loss": f"{found['single'].text}: {found['mean'].text}, {found['worst'].text}",
