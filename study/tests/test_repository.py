@@ -11,6 +11,7 @@ from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from analysis.core.view import View
+from study.tests.browser import TALL, Browser
 from study.tests.conftest import study
 from study.tools import fragments
 
@@ -111,6 +112,10 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     if folder == fragments.main_set():
         done = study("figures", copy, seconds=1500)
         assert done.returncode == 0, done.stderr
+        with Browser(tmp_path / "profile", 1300, 900) as browser:
+            for page in sorted(copy.glob("*.html")):
+                browser.open(page)
+                assert browser.value(TALL) == [], page.name
         assert [part for part in parts() if not (copy / f"{part}.html").exists()] == []
     else:
         for part in parts():
