@@ -39,9 +39,9 @@ def draw(tables, view):
             "f4_sparse_solvers": sparse(results, look), "f5_fill": over_fill(results, look)}
 
 
-def fastest(results, look, title, names, letters=13, line=2.1, agreed=()):
-    """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high. `agreed`: {scene: the
-    key of MARKS}, of those that several machines were compared on."""
+def fastest(results, look, title, names, letters=13, line=2.1, agreed={}):
+    """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high. `agreed`: {scene: verdict}
+    of study/merge, of those that several machines were compared on."""
     cells = map_cells(results, names)
     sizes = gather((cell.variables, cell) for cell in cells)
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * len(sizes)), 7.4))
@@ -49,7 +49,7 @@ def fastest(results, look, title, names, letters=13, line=2.1, agreed=()):
     if not any(cell.ranking for cell in cells):
         return missing("nobody of these was timed", axes)
     for place, mine in enumerate(sizes.values()):
-        _column(axes, place - 0.5, mine, look, (letters, line, list(results.variants)), dict(agreed))
+        _column(axes, place - 0.5, mine, look, (letters, line, list(results.variants)), agreed)
     axes.axhline(0, color="#444444", linewidth=0.8)
     axes.set(xlim=(-0.5, len(sizes) - 0.5), ylim=(BAND[0], 100))
     axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
@@ -59,7 +59,7 @@ def fastest(results, look, title, names, letters=13, line=2.1, agreed=()):
     axes.spines["bottom"].set_visible(False)
     axes.set_xlabel("variables n", fontsize=9.5)
     axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
-    _legend(axes, cells, look, names, {*dict(agreed).values()})
+    _legend(axes, cells, look, names, {*agreed.values()})
     return figure
 
 
@@ -108,9 +108,9 @@ def _cell(axes, x, y, height, cell, look, room, agreed):
     letters, line, known = room
     names = [broken(one, letters) for one in (cell.ranking.winner, shorter(cell.ranking.winner, known))]
     if said := next((one for one in (*([*name, _margin(cell)] for name in names), *names) if len(one) * line <= height), None):
-        axes.text(x + 0.47, y + height / 2, "\n".join(said), ha="center", va="center", fontsize=6.6, linespacing=1.1, zorder=6,
+        axes.text(x + 0.47, y + height / 2, "\n".join(said), ha="center", va="center", fontsize=6.6, linespacing=1.0, zorder=6,
                   bbox={"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
-    if cell.scene in agreed:
+    if agreed.get(cell.scene) in MARKS:
         marker, full, _ = MARKS[agreed[cell.scene]]
         axes.plot(x + 0.93, y + height - 0.45 * line, marker, markersize=4, color="black", markerfacecolor="black" if full else "white",
                   markeredgewidth=0.7, zorder=7)

@@ -18,6 +18,7 @@ from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechani
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
+LEAST = 6        # points that a letter has on paper
 END = 1.5        # ratio at which it ends
 FRONT = 3        # points that make a front
 STEPS = 14       # implementations of the figure of steps
@@ -38,8 +39,8 @@ def own_fill(known):
 
 
 def size_and_fill(known):
-    """The map, its legend below: cells are as wide as paper allows."""
-    figure = maps.fastest(known.results, Look(known.registry), "", known.results.layer("libraries"), letters=9, line=2.7)
+    """The map, its legend below: cells are as wide as paper allows. Marks: what the compared sets say together."""
+    figure = maps.fastest(known.results, Look(known.registry), "", known.results.layer("libraries"), letters=9, line=3.1, agreed=known.on_the_map)
     if legend := figure.axes[0].get_legend():
         below(figure, legend, 3, 0.02, 7.2)
     return figure
@@ -111,7 +112,8 @@ def phases(known):
     rows = profiled(known)
     names = [name for name in PHASES_OF if name in set(rows.implementation)]
     figure = limit.by_phase(rows, names, sorted(set(rows.loops)))
-    figure.set_figheight(0.65 * figure.get_figheight())
+    for axes in figure.axes:
+        axes.set_xlim(0, 130)
     return figure
 
 
@@ -167,22 +169,22 @@ def _mechanisms(axes, mine, rows, chosen):
 
 
 def fit(figure, height):
-    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`, inches; None: as it is. The title of
-    all of it goes: the caption says what it is."""
+    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`: inches. The title of all of it goes:
+    the caption says what it is."""
     if figure._suptitle:
         figure._suptitle.set_text("")
     for text in figure.findobj(Text):
-        text.set_fontsize(SCALE * text.get_fontsize())
+        text.set_fontsize(max(LEAST, SCALE * text.get_fontsize()))
     for line in figure.findobj(plt.Line2D):
         line.set_linewidth(SCALE * line.get_linewidth())
     for _ in range(2):  # what stands beside the axes keeps its width
         box = figure.get_tightbbox(figure.canvas.get_renderer())
         wide, high = figure.get_size_inches()
-        figure.set_size_inches(max(2.5, wide + TEXT - box.width), high + (height - box.height if height else 0))
+        figure.set_size_inches(max(2.5, wide + TEXT - box.width), high + height - box.height)
     return figure
 
 
-# name: (what draws it, height in inches; None: as it is)
-DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (lambda known: families.held_figure(known.tables("families")["held"]), 2.2),
-         "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None), "work": (work, 3.2), "window": (window, 2.6),
-         "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}
+# name: (what draws it, height in inches)
+DRAWN = {"mechanisms": (mechanisms, 4.3), "held": (lambda known: families.held_figure(known.tables("families")["held"]), 2.0),
+         "own_fill": (own_fill, 3.5), "map": (size_and_fill, 4.8), "phases": (phases, 2.2), "work": (work, 3.0), "window": (window, 2.4),
+         "steps": (steps, 2.7), "own": (own, 2.5), "engines": (engines, 3.9)}
