@@ -18,6 +18,7 @@ PHASES = {  # colour, hatch, words; any two stay apart in grey, by one of the fi
     "evaluation": ("#cfe3f2", "", "evaluation (Φ, Φq, f)"), "assembly": ("#3578b0", "", "tangent assembly"),
     "factorization": ("#08306b", "", "factorization"), "solve": ("#e6a141", "", "solves"),
     "projection": ("#f6dcae", "////", "projections (rhs)"), "other": ("#ffffff", "....", "other")}
+EDGE = {"edgecolor": "#444444", "linewidth": 0}  # the colour of hatches; in PDF those of no edge are lost
 
 
 def draw(tables, view):
@@ -98,7 +99,7 @@ def by_phase(rows, names, sizes):
         axes.set(xlim=(0, 165), xticks=[0, 50, 100], xlabel="share of the step, %", title=f"N-four-bar, n = {2 * loops + 2:.0f}")
         line_each(axes, names)
     below(figure, len(PHASES) if len(sizes) > 1 else 3, [
-        Patch(facecolor=colour, hatch=hatch, label=words) for colour, hatch, words in PHASES.values()])
+        Patch(facecolor=colour, hatch=hatch, **EDGE, label=words) for colour, hatch, words in PHASES.values()])
     return figure
 
 
@@ -106,7 +107,7 @@ def _bar(axes, place, row):
     left = 0.0
     for phase, (colour, hatch, _) in PHASES.items():
         share = 100 * row[f"{phase}_us"] / row.step_us
-        axes.barh(place, share, left=left, height=0.8, facecolor=colour, hatch=hatch)
+        axes.barh(place, share, left=left, height=0.8, facecolor=colour, hatch=hatch, **EDGE)
         if share >= 3.5:
             axes.text(left + share / 2, place, f"{share:.0f}", ha="center", va="center", fontsize=7.5,
                       color="white" if phase in ("assembly", "factorization") else "#222222",

@@ -108,7 +108,7 @@ def _cell(axes, x, y, height, cell, look, room, agreed):
     letters, line, known = room
     names = [broken(one, letters) for one in (cell.ranking.winner, shorter(cell.ranking.winner, known))]
     if said := next((one for one in (*([*name, _margin(cell)] for name in names), *names) if len(one) * line <= height), None):
-        axes.text(x + 0.47, y + height / 2, "\n".join(said), ha="center", va="center", fontsize=6.6, linespacing=1.0, zorder=6,
+        axes.text(x + 0.47, y + height / 2, "\n".join(said), ha="center", va="center", fontsize=6.6, linespacing=1.1, zorder=6,
                   bbox={"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
     if agreed.get(cell.scene) in MARKS:
         marker, full, _ = MARKS[agreed[cell.scene]]
