@@ -20,8 +20,7 @@ OPAQUE, PALE = 0.85, 0.4
 BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
 NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
 MARKS = {  # of what several machines say together: marker, whether it is full, words
-    "decided": ("o", True, "on all machines the same one is alone among the best"), "several": ("o", False, "several are among the best on all"),
-    "differs": ("X", True, "none is: it depends on the machine")}
+    "decided": ("o", True, "one is among the best on all machines"), "several": ("o", False, "several are"), "differs": ("X", True, "none is")}
 OUTCOMES = {"decided": "wins", "equivalent": "as fast in", "open": "may be in"}
 PAPER_END = 160  # variables, right end of the paper's axis
 FIGURE_5 = 100   # variables of the paper's

@@ -264,6 +264,11 @@ def printed(known):
     return figures.fit(draw(known), height)
 
 
+def test_figures_are_of_print_size(printed):
+    box = printed.get_tightbbox(printed.canvas.get_renderer())
+    assert (box.width, box.height) == pytest.approx((figures.TEXT, figures.DRAWN["map"][1]), abs=0.03)
+
+
 def test_letters_are_large_enough_to_print(printed):
     assert min(text.get_fontsize() for text in printed.findobj(Text) if text.get_text()) >= 6
     assert not re.findall(r"\\tiny|\\fontsize\{[0-5](?!\d)", TEXT)

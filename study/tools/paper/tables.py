@@ -203,4 +203,4 @@ def mechanisms(known):
                      "" if mine is None else number(1 / mine.to_rival) + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
                                                                           if bounded(mine.to_rival_low, mine.to_rival_high) else "")))
     return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{30mm}", "step, µs": "r",
-                        "next ÷ it": "l", "as fast": r"P{28mm}", "own": "l"}, long=True)
+                        "next ÷ it": "l", "as fast": r"P{26mm}", "own": "l"}, long=True)
