@@ -229,8 +229,9 @@ def over_fill(results, look):
         at = scenes.index + SHIFT * (place - len(lines) / 2)
         found = [results.versus(scene, led.get(fill), best[fill]) for fill, scene in scenes.items()]
         ratios.plot(at, [one.value if one else 1.0 if led.get(fill, "") == best[fill] else numpy.nan for one, fill in zip(found, scenes.index)], **style)
-        known = [(x, one.low, one.high) for x, one in zip(at, found) if one and bounded(one.low, one.high)]
-        ratios.vlines(*zip(*known) if known else ([], [], []), color=style["color"], linewidth=2.2, alpha=0.6)
+        for x, one in zip(at, found):
+            if one and bounded(one.low, one.high):
+                ratios.vlines(x, one.low, one.high, color=style["color"], linewidth=2.2, alpha=0.6)
     times.set(title=f"Figure 5: sparse solvers of libraries over fill, and the fastest dense ones, n = {size:g}", ylabel="time of a pass, µs")
     ratios.set(xlabel="non-zeros of the tangent, % of n²", ylabel="time ÷ the least at that fill", ylim=(0.93, FOLLOWERS))
     number_axis(times.yaxis)
