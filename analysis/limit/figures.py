@@ -50,9 +50,10 @@ def leaders(rows, own=()):
 
 def over_size(bounds, rows, look, own):
     """Above: µs a step; then multiples of the limit code, and libraries over the fastest one, with intervals. `own`: as leaders() has it."""
-    figure, (times, multiples, behind) = plt.subplots(3, 1, sharex=True, figsize=(8.6, 10.8), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1, 1]})
+    figure, three = plt.subplots(3, 1, sharex=True, figsize=(8.6, 10.8), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1, 1]})
+    times, multiples, behind = three
     if rows.empty:
-        return missing("no size was timed", times, multiples, behind)
+        return missing("no size was timed", *three)
     sizes = sorted(rows.variables.unique())
     bounds = bounds[bounds.status == "done"].sort_values("variables")
     for column, (label, dash) in BOUNDS.items():

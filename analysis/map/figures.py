@@ -216,19 +216,22 @@ def over_fill(results, look):
     scenes = samples.groupby("fill_percent").scene.first()
     us = samples.groupby(["implementation", "fill_percent"]).us.agg(["median", "min", "max"])
     sparse_ones = [name for name in paper.sparse(results, others=True) if name in us.index]
-    groups = {"dense": paper.dense(results), "sparse evaluation, dense solver": [name for name in results.layer("libraries") if name.startswith("hybrid_dense/")]}
+    hybrid = [name for name in results.layer("libraries") if name.startswith("hybrid_dense/")]
+    groups = (("dense", paper.dense(results), "-"), ("sparse evaluation, dense solver", hybrid, "--"))
     lines = {name: (dict.fromkeys(us.loc[name].index, name), look.line(name)) for name in sparse_ones}  # {label: ({fill: who}, keywords)}
-    for (who, those), dash in zip(groups.items(), ("-", "--")):
+    for who, those, dash in groups:
         led = {fill: name for fill, scene in scenes.items() if (name := results.fastest(scene, those))}
-        lines[f"{who}, the fastest: {', '.join(dict.fromkeys(led.values()))}"] = led, {"color": "black", "linestyle": dash, "linewidth": 2.2, "zorder": 1.5}
-    best = {fill: results.fastest(scene, [*sparse_ones, *sum(groups.values(), [])]) for fill, scene in scenes.items()}
+        style = {"color": "black", "linestyle": dash, "linewidth": 2.2, "zorder": 1.5}
+        lines[f"{who}, the fastest: {', '.join(dict.fromkeys(led.values()))}"] = led, style
+    best = {fill: results.fastest(scene, sum((those for _, those, _ in groups), sparse_ones)) for fill, scene in scenes.items()}
     for place, (label, (led, style)) in enumerate(lines.items()):
         rows = us.reindex([(led.get(fill), fill) for fill in scenes.index])
         times.plot(scenes.index, rows["median"], label=label, **style)
         times.vlines(scenes.index, rows["min"], rows["max"], color=style["color"], linewidth=2.2, alpha=0.6)
         at = scenes.index + SHIFT * (place - len(lines) / 2)
         found = [results.versus(scene, led.get(fill), best[fill]) for fill, scene in scenes.items()]
-        ratios.plot(at, [one.value if one else 1.0 if led.get(fill, "") == best[fill] else numpy.nan for one, fill in zip(found, scenes.index)], **style)
+        alone = [1.0 if led.get(fill, "") == best[fill] else numpy.nan for fill in scenes.index]
+        ratios.plot(at, [one.value if one else value for one, value in zip(found, alone)], **style)
         for x, one in zip(at, found):
             if one and bounded(one.low, one.high):
                 ratios.vlines(x, one.low, one.high, color=style["color"], linewidth=2.2, alpha=0.6)
@@ -239,6 +242,7 @@ def over_fill(results, look):
     for axes in (times, ratios):
         axes.grid(True, which="major")
     legend(times, order=list(lines).index)
-    figure.text(figure.subplotpars.left, 0.04, f"above: median of processes; bars: least to largest. Below: those within {FOLLOWERS:g} times the least time, "
-                "side by side; bars: 95 % interval.\nWho is not there was not timed (reasons: table of failures)", fontsize=7.5, color=GREY, va="top")
+    notes = (f"above: median of processes; bars: least to largest. Below: those within {FOLLOWERS:g} times the least time, side by side; bars: 95 % "
+             "interval.\nWho is not there was not timed (reasons: table of failures)")
+    figure.text(figure.subplotpars.left, 0.04, notes, fontsize=7.5, color=GREY, va="top")
     return figure

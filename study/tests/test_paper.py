@@ -73,7 +73,8 @@ def test_a_number_of_several_machines_has_records_of_each(known, found):
 
 
 def test_the_appendix_has_the_first_record_of_each_number_and_a_table_has_all():
-    found = {"a.one": Number("1", "t/x", ("r/1.json", "r/2.json")), "a.two": Number("2", "t/x", ("r/1.json", "r/2.json")), "b.one": Number("3", "f", ())}
+    both = "t/x", ("r/1.json", "r/2.json")
+    found = {"a.one": Number("1", *both), "a.two": Number("2", *both), "b.one": Number("3", "f", ())}
     first, second = tables.of_numbers(found).splitlines()
     assert "r/\\allowbreak{}1 +1" in first and all(rf"{{where:{name}}}" in first for name in ("a.one", "a.two")) and "{where:b.one}" in second
     rows = pandas.read_csv(io.StringIO(tables.all_numbers(found)), keep_default_na=False)

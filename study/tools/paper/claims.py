@@ -30,7 +30,8 @@ def claims():
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
         Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
-        Claim("filled", "Once assembly is sparse, most of a step with dense Cholesky is its factorization in filled cells, too", "map", "fill", _filled),
+        Claim("filled", "Once assembly is sparse, most of a step with dense Cholesky is its factorization in filled cells, too",
+              "map", "fill", _filled),
         Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", _compared, True),
         Claim("machines", "On nine of ten mechanisms one library is fastest, or not shown to be over 5 % slower, on every processor compared",
               "families", "machines", _machines, True),
@@ -78,7 +79,8 @@ def _single(known):
     if not name:
         return None, ""
     rows = known.tables("families")["scenes"].loc[lambda rows: rows.implementation == name].merge(real_mechanisms(known)[["scene", "scheme"]])
-    ends = (gmean(rows.set_index("scene")[f"to_rival_{end}"].replace([0, math.inf], math.nan).reindex(ratios.index).fillna(ratios)) for end in ("low", "high"))
+    rows = rows.set_index("scene").reindex(ratios.index).replace([0, math.inf], math.nan)
+    ends = (gmean(rows[end].fillna(ratios)) for end in ("to_rival_low", "to_rival_high"))
     return gmean(ratios) <= 1.3, f"at most 1.3; here {name} {between(gmean(ratios), *ends, more=', of all ends')}"
 
 
@@ -103,8 +105,8 @@ def _phases(known):
 
 
 def _filled(known):
-    rows = known.tables("map")["tidy"].loc[lambda rows: (rows.kind == "phases") & (rows.status == "ok") & rows.fill_asked.notna() & (rows.implementation == HYBRID)]
-    shares = rows.groupby("scene").phase_factorization.median()
+    rows = known.tables("map")["tidy"].loc[lambda rows: (rows.kind == "phases") & (rows.status == "ok") & rows.fill_asked.notna()]
+    shares = rows[rows.implementation == HYBRID].groupby("scene").phase_factorization.median()
     return (bool((shares > 0.5).all()) if len(shares) else None), f"more than half; here {percent(shares.min())} or more" if len(shares) else ""
 
 
@@ -162,7 +164,8 @@ def _cautious(known):
     tables = known.tables("stability")
     rows = tables["maps"].merge(tables["windows"][["loops", "step", "precision", "lower"]], on=["loops", "step", "precision"])
     rows = rows[(rows.scheme == "penalty") & (rows.precision == "double") & (rows.penalty_asked != "auto") & (rows.status != "dropped")]
-    return _counted(rows[rows.penalty_asked.astype(float) < rows.lower].status == "ok", lambda count, _: count > 0, "at least one run; here {count} of {total} below")
+    below = rows[rows.penalty_asked.astype(float) < rows.lower]
+    return _counted(below.status == "ok", lambda count, _: count > 0, "at least one run; here {count} of {total} below")
 
 
 def _mixed(known):

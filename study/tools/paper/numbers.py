@@ -146,13 +146,14 @@ def _machines(known):
     told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in sets]
     on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, sets[1:]))
     where, asked = "of " + ", ".join(one.folder.name for one in sets), {one.question.scene for one in known.agreed}
-    scenes, cells = ([f"{one.folder.name}/{name}" for one in sets for name in _records(one.tables(part)[table].loc[lambda rows: rows.scene.isin(asked)])]
-                     for part, table in (("families", "scenes"), ("map", "tidy")))
+    told_by = lambda part, table: [f"{one.folder.name}/{name}" for one in sets for rows in [one.tables(part)[table]]
+                                   for name in _records(rows[rows.scene.isin(asked)])]
     bounds = [f"{one.folder.name}/{record.name}" for one in sets for record in [machine.rated(one)] if record]
     found = {name: Number(text, f"{table} {where}", tuple(records)) for table, records, texts in (
         ("set.json", (), {"count": str(len(told)), "names": "; ".join(told), "first": sets[0].folder.name, "commit": sets[0].context["commit"][:10]}),
-        ("families/scenes", scenes, {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
-        ("map/tidy", cells, {name: str(one) for name, one in verdicts.items()}),
+        ("families/scenes", told_by("families", "scenes"),
+         {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
+        ("map/tidy", told_by("map", "tidy"), {name: str(one) for name, one in verdicts.items()}),
         ("raw/limit", bounds, {name: on(one) for name, one in beside.items()})) for name, text in texts.items()}
     return found if known.compared else dict.fromkeys(found)
 

@@ -42,7 +42,8 @@ def of_numbers(found):
     entries = []
     for (table, records), names in gather(((one.table, one.records), name) for name, one in found.items()).items():
         first = "".join(f"; {name.removesuffix('.json')}" for name in records[:1]) + (f" +{len(records) - 1}" if len(records) > 1 else "")
-        numbers = "; ".join(rf"\hypertarget{{where:{name}}}{{\textbf{{{tex(name)}}}}} {tex(shorten(found[name].text, 20, placeholder=' …'))}" for name in names)
+        numbers = "; ".join(rf"\hypertarget{{where:{name}}}{{\textbf{{{tex(name)}}}}} {tex(shorten(found[name].text, 20, placeholder=' …'))}"
+                            for name in names)
         entries.append(rf"\numberentry{{{tex(table + first)}}}{{{numbers}}}" + "\n")
     return "".join(entries)
 
