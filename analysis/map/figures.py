@@ -38,7 +38,7 @@ def draw(tables, view):
             "f4_sparse_solvers": sparse(results, look), "f5_fill": over_fill(results, look)}
 
 
-def fastest(results, look, title, names, letters=13, line=2.1, agreed={}):
+def fastest(results, look, title, names, letters=13, line=2.2, agreed={}):
     """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high. `agreed`: {scene: verdict}
     of study/merge, of those that several machines were compared on."""
     cells = map_cells(results, names)
