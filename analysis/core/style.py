@@ -13,10 +13,10 @@ from analysis.core.files import write
 from analysis.core.gather import gather
 from analysis.core.text import number
 
-# Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
-# (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
-DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
-SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A", "#A6A6D9", "#00707A")
+# Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito (2008), safe for the
+# colour-blind, or such that all of them differ in grey; markers and dashes tell the series apart without colour.
+DENSE = ("#E69F00", "#8C4A1F", "#D55E00", "#F2C14E", "#B03A48")
+SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#3B1F80", "#8A8A00", "#009E73", "#006B1F", "#A6A6D9", "#00707A")
 ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#5B3A9E")
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")

@@ -67,8 +67,8 @@ def _lead(axes, rows, scenes, look, marks, registry):
         return missing("no code of our own was timed", axes)
     insides = dict(zip(fastest.implementation.value_counts().index, cycle(FILLS)))
     for row in fastest.itertuples():
-        axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low] if row.to_rival_low > 0 else [1 / row.to_rival] * 2,
-                  color=look.colour(row.implementation), linewidth=1.0, alpha=0.7)
+        if row.to_rival_low > 0:  # on top, as most are shorter than their mark
+            axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low], "_-", color="black", linewidth=0.9, markersize=4.5, zorder=3)
         axes.plot(row.n, 1 / row.to_rival, marker=marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none",
                   fillstyle=insides[row.implementation], markerfacecoloralt="white")
     axes.axhline(1.0, color=GREY, linewidth=0.9)

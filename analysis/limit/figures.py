@@ -12,10 +12,13 @@ BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
 LIMIT_LABEL = "limit: code for the N-four-bar alone"
+MUCH = 2  # times the fastest library's time, where its panel ends
 WHOLE = 0.99  # of a step in "other": it has no phases
-PHASES = {  # colour, words; light to dark and back, so that neighbours stay apart in black and white
-    "evaluation": ("#cfe3f2", "evaluation (Φ, Φq, f)"), "assembly": ("#6baed6", "tangent assembly"), "factorization": ("#08519c", "factorization"),
-    "solve": ("#e6a141", "solves"), "projection": ("#f6dcae", "projections (rhs)"), "other": ("#e4e4e4", "other")}
+PHASES = {  # colour, hatch, words; any two stay apart in grey, by one of the first two
+    "evaluation": ("#cfe3f2", "", "evaluation (Φ, Φq, f)"), "assembly": ("#3578b0", "", "tangent assembly"),
+    "factorization": ("#08306b", "", "factorization"), "solve": ("#e6a141", "", "solves"),
+    "projection": ("#f6dcae", "////", "projections (rhs)"), "other": ("#ffffff", "....", "other")}
+EDGE = {"edgecolor": "#444444", "linewidth": 0}  # the colour of hatches; in PDF those of no edge are lost
 
 
 def draw(tables, view):
@@ -46,31 +49,34 @@ def leaders(rows, own=()):
 
 
 def over_size(bounds, rows, look, own):
-    """Above: µs a step; below: multiples of the limit code, with their intervals. `own`: as leaders() has it."""
-    figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
+    """Above: µs a step; then multiples of the limit code, and libraries over the fastest one, with intervals. `own`: as leaders() has it."""
+    figure, three = plt.subplots(3, 1, sharex=True, figsize=(8.6, 10.8), gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1, 1]})
+    times, multiples, behind = three
     if rows.empty:
-        missing("no size was timed", times)
-        return missing("", multiples)
+        return missing("no size was timed", *three)
+    sizes = sorted(rows.variables.unique())
     bounds = bounds[bounds.status == "done"].sort_values("variables")
     for column, (label, dash) in BOUNDS.items():
         times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)
     if len(bounds):
         times.fill_between(bounds.variables, bounds.bound_ns / 1e3, times.get_ylim()[0], color=GREY, alpha=0.12, linewidth=0)
     for name in [LIMIT, *leaders(rows, own)]:
-        mine = rows[rows.implementation == name].sort_values("variables")
+        mine = rows[rows.implementation == name].set_index("variables").reindex(sizes)  # lines break where a size is missing
         style = ({"color": "black", "linewidth": 2.2, "marker": "o", "markersize": 4.5} if name == LIMIT else look.line(name))
-        times.plot(mine.variables, mine.step_us, **style, label=LIMIT_LABEL if name == LIMIT else name)
-        times.fill_between(mine.variables, mine.low_us, mine.high_us, color=style["color"], alpha=0.15, linewidth=0)
-        multiples.plot(mine.variables, mine.multiple, **style)
-        known = mine[(mine.multiple_low > 0) & (mine.multiple_high < numpy.inf)]
-        multiples.fill_between(known.variables, known.multiple_low, known.multiple_high, color=style["color"], alpha=0.15, linewidth=0)
+        times.plot(sizes, mine.step_us, **style, label=LIMIT_LABEL if name == LIMIT else name)
+        times.fill_between(sizes, mine.low_us, mine.high_us, color=style["color"], alpha=0.15, linewidth=0)
+        for axes, what in ((multiples, "multiple"), (behind, "to_rival"))[:1 if name.partition("/")[0] in {"limit", *own} else 2]:
+            axes.plot(sizes, mine[what], **style)
+            known = mine[mine[f"{what}_high"] < numpy.inf].reindex(sizes)
+            axes.fill_between(sizes, known[f"{what}_low"], known[f"{what}_high"], color=style["color"], alpha=0.15, linewidth=0)
     times.set(title="N-four-bar, penalty form: the best variant of each library, and all code of our own", ylabel="time per step, µs")
     multiples.set_ylabel("multiple of the limit code")
-    for axes, unit in ((times, ""), (multiples, "×")):
+    behind.set(ylabel="÷ the fastest library", ylim=(0.97, MUCH))
+    for axes, unit in ((times, ""), (multiples, "×"), (behind, "×")):
         number_axis(axes.yaxis, unit)
         axes.grid(True, which="major")
-    size_ticks(multiples, sorted(rows.variables.unique()))
-    multiples.set_xlim(rows.variables.min() / 1.3, rows.variables.max() * 1.3)
+    size_ticks(behind, sizes)
+    behind.set_xlim(rows.variables.min() / 1.3, rows.variables.max() * 1.3)
     legend(times, order=[*(label for label, _ in BOUNDS.values()), LIMIT_LABEL, *leaders(rows, own)].index)
     return figure
 
@@ -90,21 +96,23 @@ def by_phase(rows, names, sizes):
             else:
                 _bar(axes, place, row)
             if row is not None:
-                axes.text(100, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
-        axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %", title=f"N-four-bar, n = {2 * loops + 2:.0f}")
+                axes.text(100, place, f" {number(row.multiple)}× limit, {number(row.step_us)} µs", va="center", fontsize=8)
+        axes.set(xlim=(0, 165), xticks=[0, 50, 100], xlabel="share of the step, %", title=f"N-four-bar, n = {2 * loops + 2:.0f}")
         line_each(axes, names)
-    below(figure, len(PHASES) if len(sizes) > 1 else 3, [Patch(color=colour, label=words) for colour, words in PHASES.values()])
+    below(figure, len(PHASES) if len(sizes) > 1 else 3, [
+        Patch(facecolor=colour, hatch=hatch, **EDGE, label=words) for colour, hatch, words in PHASES.values()])
     return figure
 
 
 def _bar(axes, place, row):
     left = 0.0
-    for phase, (colour, _) in PHASES.items():
+    for phase, (colour, hatch, _) in PHASES.items():
         share = 100 * row[f"{phase}_us"] / row.step_us
-        axes.barh(place, share, left=left, height=0.8, color=colour, edgecolor="white", linewidth=0.5)
+        axes.barh(place, share, left=left, height=0.8, facecolor=colour, hatch=hatch, **EDGE)
         if share >= 3.5:
             axes.text(left + share / 2, place, f"{share:.0f}", ha="center", va="center", fontsize=7.5,
-                      color="white" if phase == "factorization" else "#222222")
+                      color="white" if phase in ("assembly", "factorization") else "#222222",
+                      bbox={"boxstyle": "square,pad=0.1", "facecolor": colour, "linewidth": 0} if hatch else None)
         left += share
 
 
@@ -139,6 +147,6 @@ def ahead(leads):
                      f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
     left = asked.scene.nunique() - len(about)
     axes.set(xlabel="time of the fastest library ÷ own time",
-             title="How far ahead of libraries" + (f"; {left} more scenes were not timed" if left else ""))
+             title="Code of our own: how many times as fast as the fastest library" + (f"; {left} more scenes were not timed" if left else ""))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     return figure

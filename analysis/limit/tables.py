@@ -24,14 +24,15 @@ def build(records, view):
     for role in (*FORMS, *KINDS):
         for scene, timed, cells, _ in contests(by_role, role):
             names = [name for name in (LIMIT, *registry.variants) if name in cells]  # without anchors of other pairs
+            rival = rival_of(timed, cells, registry)
             if role in FORMS:
                 loops = int(scene.partition(":")[2])
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
                 found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": known["variables"]} | cells[name]
-                                   | ratio_to("multiple", timed, name, LIMIT, cells[name]) for name in names]
+                                   | ratio_to("multiple", timed, name, LIMIT, cells[name]) | ratio_to("to_rival", timed, name, rival, cells[name])
+                                   for name in names]
             else:
                 known = {"scene": scene, "kind": role} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
-                rival = rival_of(timed, cells, registry)
                 found["scenes"] += [known | cells[name] | ratio_to("to_rival", timed, name, rival, cells[name]) for name in names]
             if role in KINDS or set(registry.libraries) & set(cells):
                 found["leads"] += [known | one for one in _leads(timed, cells, registry)]

@@ -1,10 +1,12 @@
 # Tables, what must hold, figures and sentences of the limit on synthetic records.
 from functools import partial
+from itertools import combinations
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy
 import pytest
+from matplotlib.colors import to_rgb
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
@@ -239,6 +241,21 @@ def test_phases_that_do_not_exist_are_said_in_words():
     assert [text.get_text() for text in figure.axes[0].texts].count("all in the same sweeps") == 1
     assert len(figure.axes[0].patches) == len(PHASES)  # of one/a
     plt.close(figure)
+
+
+def test_phases_stay_apart_in_grey():
+    grey = {phase: (numpy.dot(to_rgb(colour), (0.299, 0.587, 0.114)), hatch) for phase, (colour, hatch, _) in figures.PHASES.items()}
+    assert all(abs(one - other) > 0.12 or hatch != its for (one, hatch), (other, its) in combinations(grey.values(), 2))
+
+
+def test_libraries_stand_beside_the_fastest_of_them_and_a_line_breaks_where_a_size_is_missing():
+    found = made(*(bench("size", f"four-bar:{size}", number, limit_limit=1.0, own_x=1.4, one_a=3.0, **{"two_c": 4.5} if size != 40 else {})
+                   for size in (10, 40, 99) for number in (1, 2)),
+                 *(one for size in (10, 40, 99) for one in agree("size", f"four-bar:{size}", "limit_limit", "own_x", "one_a", "two_c")))
+    *_, behind = figures.draw(found, VIEW)["over_size"].axes
+    first, second = [list(line.get_ydata()) for line in behind.lines]
+    assert first == [1, 1, 1] and second[::2] == pytest.approx([1.5, 1.5]) and numpy.isnan(second[1])
+    plt.close("all")
 
 
 def test_variants_are_series_of_their_own():

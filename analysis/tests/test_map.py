@@ -13,7 +13,7 @@ from analysis.core.style import DENSE, SPARSE, Look
 from analysis.core.timing import differing
 from analysis.map import figures, page, sentences, summary, tables
 from analysis.map.cells import map_cells, table
-from analysis.map.figures import bounds, broken
+from analysis.map.figures import bounds, broken, shorter
 from analysis.map.timed import AFTER, Scene, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -166,6 +166,21 @@ def test_each_folder_has_a_colour_of_its_own():
 @pytest.mark.parametrize("letters, lines", [(30, ["csc_cholmod/supernodal"]), (13, ["csc_cholmod/", "supernodal"]), (9, ["csc_", "cholmod/", "supernodal"])])
 def test_a_name_is_broken_where_it_has_a_joint(letters, lines):
     assert broken("csc_cholmod/supernodal", letters) == lines
+
+
+@pytest.mark.parametrize("name, end", [("csc_cholmod/supernodal", "cholmod/supernodal"), ("hybrid_dense/llt", "hybrid_dense/llt"),
+                                       ("csc_ldl/up", "csc_ldl/up"), ("ldl/up", "ldl/up")])
+def test_a_shorter_name_is_that_of_no_other(name, end):
+    assert shorter(name, ["csc_cholmod/supernodal", "csc_cholmod/simplicial", "eigen_dense/llt", "hybrid_dense/llt", "csc_ldl/up", "ldl/up"]) == end
+
+
+def test_a_line_over_fill_breaks_where_a_fill_was_not_timed():
+    found = some([one for fill in (None, 0.25, 0.5, 1.0) for one in
+                  cell(A, 100, 2.0, 2.1, fill=fill) + (cell(B, 100, 3.0, 3.2, fill=fill) if fill != 0.25 else [])])
+    for axes in figures.over_fill(found, Look(found.registry)).axes:
+        assert [math.isnan(value) for line in axes.lines[:1] for value in line.get_ydata()] == [False, True, False, False]
+    assert axes.lines[0].get_ydata()[2] == pytest.approx(1.51, abs=0.01)
+    plt.close("all")
 
 
 def test_records_become_tables_and_a_page(tmp_path):

@@ -14,6 +14,10 @@ FLAGS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-u
          "--mute-audio", "--no-first-run", "--disable-background-networking",
          "--disable-component-update", "--host-resolver-rules=MAP * ~NOTFOUND",
          "--remote-debugging-pipe", "about:blank")
+# What is taller than two screens on a page whose details are open.
+TALL = """(() => { document.querySelectorAll('details').forEach(one => one.open = true);
+  return [...document.querySelectorAll('figure, table')].filter(one => one.getBoundingClientRect().height > 2 * innerHeight)
+    .map(one => one.outerHTML.slice(0, 120)); })()"""
 COMPLAINTS = ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled")
 
 

@@ -1,15 +1,21 @@
 # study/paper: the paper in the repository is of its set, and each way to be wrong is found. No LaTeX is needed.
+import io
 import re
 import shutil
 from types import SimpleNamespace
 
+import numpy
 import pandas
 import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 
 from analysis.core.files import ROOT, read_json, write_json
+from analysis.core.style import Look
+from analysis.map import figures as maps
 from study.tests.conftest import study
 from study.tools import fragments, store
-from study.tools.paper import artifact, audit, known as known_sets, main, tables
+from study.tools.paper import artifact, audit, claims as claims_, figures, known as known_sets, main, tables
 from study.tools.paper.claims import _engines, _mixed, claims
 from study.tools.paper.known import Known
 from study.tools.paper.numbers import NOT_MEASURED, Number, numbers
@@ -59,6 +65,20 @@ def test_every_number_has_a_source_and_most_are_measured(found):
     assert all(one.table for one in found.values() if one.text != NOT_MEASURED)
     assert sum(one.text != NOT_MEASURED for one in found.values()) > 60
     assert all(len(set(one.records)) == len(one.records) for one in found.values())
+
+
+def test_a_number_of_several_machines_has_records_of_each(known, found):
+    mine = [one for name, one in found.items() if name.startswith("machines.") and not one.table.startswith("set.json")]
+    assert all({record.partition("/")[0] for record in one.records} == {it.folder.name for it in known.sets} for one in mine) and len(mine) > 8
+
+
+def test_the_appendix_has_the_first_record_of_each_number_and_a_table_has_all():
+    both = "t/x", ("r/1.json", "r/2.json")
+    found = {"a.one": Number("1", *both), "a.two": Number("2", *both), "b.one": Number("3", "f", ())}
+    first, second = tables.of_numbers(found).splitlines()
+    assert "r/\\allowbreak{}1 +1" in first and all(rf"{{where:{name}}}" in first for name in ("a.one", "a.two")) and "{where:b.one}" in second
+    rows = pandas.read_csv(io.StringIO(tables.all_numbers(found)), keep_default_na=False)
+    assert list(rows.records) == ["r/1.json r/2.json"] * 2 + [""]
 
 
 def test_controls_are_those_by_which_the_set_is_judged(known, found):
@@ -238,9 +258,73 @@ def test_a_paper_of_too_many_pages_or_with_unknown_references_is_an_error(tmp_pa
     assert main.build() == (1 if said else 0) and said in capsys.readouterr().out
 
 
+@pytest.fixture(scope="module")
+def printed(known):
+    """The map as the paper prints it."""
+    draw, height = figures.DRAWN["map"]
+    return figures.fit(draw(known), height)
+
+
+def test_figures_are_of_print_size(printed):
+    box = printed.get_tightbbox(printed.canvas.get_renderer())
+    assert (box.width, box.height) == pytest.approx((figures.TEXT, figures.DRAWN["map"][1]), abs=0.03)
+
+
+def test_letters_are_large_enough_to_print(printed):
+    assert min(text.get_fontsize() for text in printed.findobj(Text) if text.get_text()) >= 6
+    assert not re.findall(r"\\tiny|\\fontsize\{[0-5](?!\d)", TEXT)
+
+
+def test_each_cell_of_the_map_names_its_winner_within_it(known, printed):
+    axes, renderer = printed.axes[0], printed.canvas.get_renderer()
+    cells = [one.get_window_extent(renderer) for one in axes.patches]
+    boxes = [one.get_window_extent(renderer) for one in axes.texts]
+    assert boxes and all(any(cell.x0 <= box.x0 < box.x1 <= cell.x1 and cell.y0 <= box.y0 < box.y1 <= cell.y1 and cell.height < 0.5 * axes.bbox.height
+                             for cell in cells) for box in boxes)
+    for text in axes.texts:
+        name = re.match(r"[^?=]+?/[a-z]+", text.get_text().replace("\n", ""))[0]
+        assert len([one for one in known.registry.variants if one.endswith(name)]) == 1, name
+
+
+def test_winners_of_the_map_differ_in_grey(known):
+    cells, look = known.tables("map")["cells"], Look(known.registry)
+    greys = sorted(numpy.dot(to_rgb(look.colour(name)), (0.299, 0.587, 0.114))
+                   for name in set(cells.winner[(cells.layer == "libraries") & (cells.winner != "")]))
+    assert min(numpy.diff(greys)) > 0.08
+
+
+def test_the_map_says_where_machines_agree(known, printed):
+    labels = [text.get_text() for text in printed.legends[0].get_texts()]
+    verdicts = [one for one in known.on_the_map.values() if one in maps.MARKS]
+    marks = [line.get_marker() for line in printed.axes[0].lines if line.get_marker() in ("o", "X")]
+    assert sorted(marks) == sorted(maps.MARKS[one][0] for one in verdicts) and {maps.MARKS[one][2] for one in verdicts} <= {*labels}
+
+
 def test_a_set_that_is_not_stored_is_refused(tmp_path):
     done = study("paper", "--audit", tmp_path)
     assert done.returncode == 2 and "is no stored set" in done.stderr
+
+
+def test_what_is_expected_has_its_interval():
+    said = claims_.extreme([(1.2, 1.1, 1.3), (1.5, 1.4, 1.6), (2.0, 0.0, float("inf"))])
+    assert said == "1.2 (1.1 to 1.3); 1 not bounded" and claims_.extreme([(1.2, 1.1, 1.3), (1.5, 1.4, 1.6)], most=True) == "1.5 (1.4 to 1.6)"
+
+
+@pytest.mark.parametrize("status, holds", [("ok", True), ("diverged", False), ("dropped", None)])
+def test_a_smaller_factor_may_be_ok(status, holds):
+    maps_ = pandas.DataFrame({"loops": [1.0] * 2, "step": [1e-3] * 2, "precision": "double", "scheme": "penalty", "penalty_asked": ["1e5", "1e9"],
+                              "status": [status, "ok"]})
+    windows = pandas.DataFrame({"loops": [1.0], "step": [1e-3], "precision": ["double"], "lower": [1e7]})
+    [claim] = [one for one in claims() if one.name == "cautious"]
+    assert claim.found(SimpleNamespace(tables=lambda part: {"maps": maps_, "windows": windows}))[0] is holds
+
+
+@pytest.mark.parametrize("share, fill, holds", [(0.8, 0.5, True), (0.4, 0.5, False), (0.8, None, None)])
+def test_phases_of_filled_cells(share, fill, holds):
+    rows = pandas.DataFrame({"kind": ["phases"], "status": ["ok"], "fill_asked": [float("nan") if fill is None else fill],
+                             "implementation": ["hybrid_dense/llt"], "scene": ["four-bar:4"], "phase_factorization": [share]})
+    [claim] = [one for one in claims() if one.name == "filled"]
+    assert claim.found(SimpleNamespace(tables=lambda part: {"tidy": rows}))[0] is holds
 
 
 def test_without_an_interval_a_claim_is_not_measured():

@@ -11,6 +11,7 @@ from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from analysis.core.view import View
+from study.tests.browser import TALL, Browser
 from study.tests.conftest import study
 from study.tools import fragments
 
@@ -54,9 +55,13 @@ def test_the_rule_is_that_of_its_set():
     assert fragments.of_set(text) == text, "study/store writes it anew"
 
 
-def test_it_is_cited_with_no_earlier_date_than_that_of_its_set():
-    released = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))["date-released"]
-    assert str(released) >= read_json(fragments.main_set() / "set.json")["date"][:10]
+def test_it_is_cited_with_the_commit_of_its_set_and_no_earlier_date(monkeypatch):
+    text = fragments.CITATION.read_text(encoding="utf-8")
+    cited, facts = yaml.safe_load(text), read_json(fragments.main_set() / "set.json")
+    assert str(cited["date-released"]) >= facts["date"][:10] and cited["commit"] == facts["context"]["commit"]
+    assert fragments.cited(text.replace(cited["commit"], "0" * 40)) == text, "study/store fills it anew"
+    monkeypatch.setattr(fragments, "rewritten", lambda path, made: made is fragments.cited)
+    assert fragments.refresh() == [fragments.CITATION]
 
 
 @pytest.mark.parametrize("path", fragments.texts(), ids=lambda path: str(path.relative_to(ROOT)))
@@ -107,6 +112,10 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     if folder == fragments.main_set():
         done = study("figures", copy, seconds=1500)
         assert done.returncode == 0, done.stderr
+        with Browser(tmp_path / "profile", 1300, 900) as browser:
+            for page in sorted(copy.glob("*.html")):
+                browser.open(page)
+                assert browser.value(TALL) == [], page.name
         assert [part for part in parts() if not (copy / f"{part}.html").exists()] == []
     else:
         for part in parts():

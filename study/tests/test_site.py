@@ -3,6 +3,8 @@ from urllib.parse import parse_qs
 
 import pytest
 
+from study.tests.browser import TALL
+
 from analysis.core.parts import parts
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
@@ -27,7 +29,7 @@ def test_a_page_is_whole_at_every_width(browser, smoke, name):
         browser.open(smoke / f"{name}.html")
         assert browser.value(BEYOND) <= 0, f"{name}.html is wider than {width} px"
         if width >= 1300:
-            browser.value("document.querySelectorAll('details').forEach(one => one.open = true)")
+            assert browser.value(TALL) == [], f"{name}.html has something taller than two screens at {width} px"
             assert browser.value(HIDDEN) == [], f"{name}.html hides something at {width} px"
     assert browser.value("document.querySelectorAll('h1').length") == 1
     assert browser.value("[...document.images].every(one => one.complete && one.naturalWidth > 0 && one.alt)")

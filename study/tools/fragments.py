@@ -10,6 +10,7 @@ from analysis.core.text import number
 from analysis.core.view import Folder
 from study.tools.merge import agreement, machine
 
+CITATION = ROOT / "CITATION.cff"
 SWEEPS = ROOT / "results" / "sweeps"  # records of study/limit/million
 MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
@@ -92,8 +93,8 @@ def _machines(main, others):
 
 
 def refresh():
-    """Fills all texts of the repository anew, and the rule; the paths of those that changed."""
-    return [path for path, made in ((RULE, of_set), *((text, filled) for text in texts())) if rewritten(path, made)]
+    """Fills all texts of the repository anew, the rule, and how it is cited; the paths of those that changed."""
+    return [path for path, made in ((RULE, of_set), (CITATION, cited), *((text, filled) for text in texts())) if rewritten(path, made)]
 
 
 def rewritten(path, made):
@@ -109,6 +110,11 @@ def of_set(rule):
     """The rule of the stored set that the text of one names; of none, {}, itself."""
     name = json.loads(rule).get("set")
     return as_json({"set": name} | read_json(ROOT / "results" / name / "families" / RULE.name)) if name else rule
+
+
+def cited(text):
+    """CITATION.cff with the commit of the main set."""
+    return re.sub(r'^commit: "\w*"', f'commit: "{read_json(main_set() / "set.json")["context"]["commit"]}"', text, flags=re.M)
 
 
 def texts():

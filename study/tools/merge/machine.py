@@ -28,11 +28,16 @@ def origins(studyset):
         yield found
 
 
+def rated(studyset):
+    """The record of its `mbs limit`; None of a set without."""
+    return next((one for one in records.read_part(studyset.folder, "limit") if one.role == "bounds" and "machine" in one.output), None)
+
+
 def rates(studyset):
     """{name of RATES: value}, as `mbs limit` measured them; {} of a set without."""
-    if not (found := [one for one in records.read_part(studyset.folder, "limit") if one.role == "bounds" and "machine" in one.output]):
+    if not (found := rated(studyset)):
         return {}
-    known = found[0].output["machine"]
+    known = found.output["machine"]
     known |= {one["name"]: one["bytes_per_ns"] for one in known.get("levels", [])}
     return {name: known[name] for name in RATES if name in known}
 

@@ -2,12 +2,12 @@
 # sentence that fits where the paper has one for each outcome (\either).
 import math
 from collections import namedtuple
-from operator import eq
+from operator import eq, itemgetter
 
 from scipy.stats import gmean
 
 from analysis.accuracy import pairs
-from analysis.core.text import between, number, span
+from analysis.core.text import between, bounded, number, span
 from analysis.engines.equal_error import compared
 from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
@@ -30,6 +30,8 @@ def claims():
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
         Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
+        Claim("filled", "Once assembly is sparse, most of a step with dense Cholesky is its factorization in filled cells, too",
+              "map", "fill", _filled),
         Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", _compared, True),
         Claim("machines", "On nine of ten mechanisms one library is fastest, or not shown to be over 5 % slower, on every processor compared",
               "families", "machines", _machines, True),
@@ -37,6 +39,7 @@ def claims():
               "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out, on each machine", "families", "price", _rule),
         Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
+        Claim("cautious", "The estimated lower end is cautious: somewhere a smaller factor is ok as well", "stability", "window", _cautious),
         Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window",
               _of_2008(lambda one: PAPER_PENALTY < one.lower, "the window begins above {factor}; here at {lower}")),
         Claim("open", "At the largest size and the step of 2008 the estimated window of the penalty form is open", "stability", "window",
@@ -64,16 +67,28 @@ def _sparse(known):
     return _counted(sparse, lambda count, total: 2 * count > total, "more than half; here {count} of {total}")
 
 
+def extreme(ratios, most=False):
+    """Of [(value, low, high)] the one with the least lower end, or the largest upper one; and how many have no interval."""
+    known = [one for one in ratios if bounded(*one[1:])]
+    said = [between(*(max(known, key=itemgetter(2)) if most else min(known, key=itemgetter(1))))] if known else []
+    return "; ".join(said + [f"{len(ratios) - len(known)} not bounded"] * (len(known) < len(ratios)))
+
+
 def _single(known):
     name, ratios = next(iter(losses(known).items()), ("", None))
-    return (gmean(ratios) <= 1.3 if name else None), f"at most 1.3; here {name} {number(gmean(ratios))}" if name else ""
+    if not name:
+        return None, ""
+    rows = known.tables("families")["scenes"].loc[lambda rows: rows.implementation == name].merge(real_mechanisms(known)[["scene", "scheme"]])
+    rows = rows.set_index("scene").reindex(ratios.index).replace([0, math.inf], math.nan)
+    ends = (gmean(rows[end].fillna(ratios)) for end in ("to_rival_low", "to_rival_high"))
+    return gmean(ratios) <= 1.3, f"at most 1.3; here {name} {between(gmean(ratios), *ends, more=', of all ends')}"
 
 
 def _assembly(known):
     cells = known.tables("map")["cells"]
     scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
-    lows = [one.low for one in (known.results.versus(scene, DENSE, HYBRID) for scene in scenes) if one]
-    return (min(lows) > 1, f"above 1; here {span(lows)} at the lower ends") if lows else (None, "")
+    found = [one[:3] for one in (known.results.versus(scene, DENSE, HYBRID) for scene in scenes) if one]
+    return (min(low for _, low, _ in found) > 1, f"above 1; here at least {extreme(found)}") if found else (None, "")
 
 
 def _overtakes(known):
@@ -87,6 +102,12 @@ def _phases(known):
     rows = profiled(known).loc[lambda rows: rows.implementation == HYBRID]
     share = phases(rows.iloc[0])["factorization"] if len(rows) else None
     return (None, "") if share is None else (share > 0.5, f"more than half; here {percent(share)}")
+
+
+def _filled(known):
+    rows = known.tables("map")["tidy"].loc[lambda rows: (rows.kind == "phases") & (rows.status == "ok") & rows.fill_asked.notna()]
+    shares = rows[rows.implementation == HYBRID].groupby("scene").phase_factorization.median()
+    return (bool((shares > 0.5).all()) if len(shares) else None), f"more than half; here {percent(shares.min())} or more" if len(shares) else ""
 
 
 def _compared(known):
@@ -139,15 +160,28 @@ def _of_2008(holds, text):
     return found
 
 
+def _cautious(known):
+    tables = known.tables("stability")
+    rows = tables["maps"].merge(tables["windows"][["loops", "step", "precision", "lower"]], on=["loops", "step", "precision"])
+    rows = rows[(rows.scheme == "penalty") & (rows.precision == "double") & (rows.penalty_asked != "auto") & (rows.status != "dropped")]
+    below = rows[rows.penalty_asked.astype(float) < rows.lower]
+    return _counted(below.status == "ok", lambda count, _: count > 0, "at least one run; here {count} of {total} below")
+
+
 def _mixed(known):
     rows = pairs.shown(known.tables("accuracy")["pairs"].loc[lambda rows: (rows.kind == pairs.PRECISION) & rows.second.str.contains("mixed")])
     return _counted(rows.index.isin(pairs.gains(rows).index), lambda count, _: count == 0,
-                    "none; here {count} of {total} of the same class that have an interval")
+                    "none; here {count} of {total} of the same class that have an interval" + _least(rows))
+
+
+def _least(rows):
+    return f", the least time over the other's {extreme([*zip(rows.ratio, rows.low, rows.high)])}" if len(rows) else ""
 
 
 def _compiled(known):
     rows = fastest_own(known.tables("families")["scenes"], known.registry)
-    said = f"time over the library's below 1; here {span(rows.to_rival)}, {{count}} of {{total}} shown" if len(rows) else ""
+    found = [*zip(rows.to_rival, rows.to_rival_low, rows.to_rival_high)]
+    said = f"time over the library's below 1; here up to {extreme(found, most=True)}, {{count}} of {{total}} shown" if found else ""
     return _counted(rows.to_rival_high < 1, eq, said)
 
 
@@ -160,7 +194,8 @@ def _batches(known):
 
 def _engines(known):
     rows = compared(known.tables("engines")["equal_error"], "library").loc[lambda rows: rows.high < math.inf]
-    return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons that have an interval")
+    return _counted(rows.high < 1, lambda count, _: count == 0,
+                    "none; here {count} of {total} comparisons that have an interval" + _least(rows))
 
 
 def _quiet(known):

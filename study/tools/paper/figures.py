@@ -6,7 +6,7 @@ from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import figures as accuracy
 from analysis.accuracy.winners import met
-from analysis.core.style import GREY, SPARSE, Look, nothing
+from analysis.core.style import GREY, Look, nothing
 from analysis.core.text import bounded
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
@@ -18,6 +18,7 @@ from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechani
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
+LEAST = 6        # points that a letter has on paper
 END = 1.5        # ratio at which it ends
 FRONT = 3        # points that make a front
 STEPS = 14       # implementations of the figure of steps
@@ -38,8 +39,8 @@ def own_fill(known):
 
 
 def size_and_fill(known):
-    """The map, its legend below: cells are as wide as paper allows."""
-    figure = maps.fastest(known.results, Look(known.registry), "", known.results.layer("libraries"), letters=9, line=2.7)
+    """The map, its legend below: cells are as wide as paper allows. Marks: what the compared sets say together."""
+    figure = maps.fastest(known.results, Look(known.registry), "", known.results.layer("libraries"), letters=9, line=3.1, agreed=known.on_the_map)
     if legend := figure.axes[0].get_legend():
         below(figure, legend, 3, 0.02, 7.2)
     return figure
@@ -103,7 +104,7 @@ def below(figure, legend, columns, y=-0.03, size=9):
     """A legend below the axes instead of beside them."""
     entries = legend.legendHandles, [text.get_text() for text in legend.get_texts()]
     legend.remove()
-    figure.legend(*entries, loc="upper center", bbox_to_anchor=(0.5, y), ncols=columns, fontsize=size)
+    figure.legend(*entries, loc="upper center", bbox_to_anchor=(0.5, y), ncols=columns, fontsize=size, columnspacing=1.0, handlelength=1.8)
 
 
 def phases(known):
@@ -111,7 +112,8 @@ def phases(known):
     rows = profiled(known)
     names = [name for name in PHASES_OF if name in set(rows.implementation)]
     figure = limit.by_phase(rows, names, sorted(set(rows.loops)))
-    figure.set_figheight(0.65 * figure.get_figheight())
+    for axes in figure.axes:
+        axes.set_xlim(0, 130)
     return figure
 
 
@@ -135,16 +137,16 @@ def mechanisms(known):
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:len(MARKS)]
     half = -(-len(mine) // 2)
-    figure, panels = plt.subplots(1, 2, figsize=(8.4, 1.2 + 0.16 * half), gridspec_kw={"wspace": 0.75})
+    figure, panels = plt.subplots(1, 2, figsize=(8.4, 1.2 + 0.16 * half), gridspec_kw={"wspace": 0.85})
     for axes, some in zip(panels, (mine[:half], mine[half:])):
-        _mechanisms(axes, some, rows[rows.scene.isin(some.scene)], chosen)
+        _mechanisms(axes, some, rows[rows.scene.isin(some.scene)], chosen, Look(known.registry))
     panels[0].plot([], [], "|", color="#9a9a9a", markersize=6, label="other libraries")
     entries = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
     figure.legend(entries.values(), entries, loc="lower center", bbox_to_anchor=(0.42, 0.89), ncols=4, fontsize=8.5)
     return figure
 
 
-def _mechanisms(axes, mine, rows, chosen):
+def _mechanisms(axes, mine, rows, chosen, look):
     places = {scene: place for place, scene in enumerate(mine.scene)}
     for name, group in rows.groupby("implementation", sort=False):
         y = group.scene.map(places) + (0.7 / len(chosen) * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)
@@ -152,7 +154,7 @@ def _mechanisms(axes, mine, rows, chosen):
         if name not in chosen:
             axes.plot(inside.to_rival, y[inside.index], "|", color="#9a9a9a", markersize=6, zorder=1)
             continue
-        colour, mark = SPARSE[2 + chosen.index(name)], MARKS[chosen.index(name)]
+        colour, mark = look.colour(name), MARKS[chosen.index(name)]
         axes.plot(inside.to_rival, y[inside.index], mark, color=colour, markersize=4.5, label=name, markerfacecolor=colour if mark in "os^" else "white")
         for row in inside.itertuples():
             if bounded(row.to_rival_low, row.to_rival_high):
@@ -167,22 +169,27 @@ def _mechanisms(axes, mine, rows, chosen):
 
 
 def fit(figure, height):
-    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`, inches; None: as it is. The title of
-    all of it goes: the caption says what it is."""
+    """Makes a figure as wide as the text, and its letters and lines as small as paper allows. `height`: inches. The title of all of it goes:
+    the caption says what it is."""
     if figure._suptitle:
-        figure._suptitle.set_text("")
+        figure._suptitle.remove()
+        figure._suptitle = None
     for text in figure.findobj(Text):
-        text.set_fontsize(SCALE * text.get_fontsize())
+        text.set_fontsize(max(LEAST, SCALE * text.get_fontsize()))
     for line in figure.findobj(plt.Line2D):
         line.set_linewidth(SCALE * line.get_linewidth())
-    for _ in range(2):  # what stands beside the axes keeps its width
+    for _ in range(8):  # what stands beside the axes keeps its width
+        if figure.get_layout_engine():
+            figure.get_layout_engine().execute(figure)
         box = figure.get_tightbbox(figure.canvas.get_renderer())
+        if max(abs(TEXT - box.width), abs(height - box.height)) < 0.02:
+            break
         wide, high = figure.get_size_inches()
-        figure.set_size_inches(max(2.5, wide + TEXT - box.width), high + (height - box.height if height else 0))
+        figure.set_size_inches(max(2.5, wide + TEXT - box.width), high + height - box.height)
     return figure
 
 
-# name: (what draws it, height in inches; None: as it is)
-DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (lambda known: families.held_figure(known.tables("families")["held"]), 2.2),
-         "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None), "work": (work, 3.2), "window": (window, 2.6),
-         "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}
+# name: (what draws it, height in inches)
+DRAWN = {"mechanisms": (mechanisms, 4.3), "held": (lambda known: families.held_figure(known.tables("families")["held"]), 2.0),
+         "own_fill": (own_fill, 3.5), "map": (size_and_fill, 4.8), "phases": (phases, 2.2), "work": (work, 3.0), "window": (window, 2.4),
+         "steps": (steps, 2.9), "own": (own, 2.5), "engines": (engines, 3.5)}

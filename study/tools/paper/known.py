@@ -21,6 +21,9 @@ class Known(Folder):
     # What the compared ones say together of libraries.
     agreed = cached_property(lambda self: [one for one in agreement.agreements(self.compared)[0] if one.question.layer == "libraries"]
                              if self.compared else [])
+    # {scene of the map: verdict} of these.
+    on_the_map = cached_property(lambda self: {one.question.scene: one.verdict for one in self.agreed if one.question.form == "penalty"
+                                               and one.question.scene in {*self.tables("map")["cells"].scene}})
 
     @cache
     def tables(self, part):

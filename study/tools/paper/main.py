@@ -64,6 +64,7 @@ def write_parts(known, found, claimed):
     for name in tables.TABLES:
         write_text(audit.BUILD / f"table-{name}.tex", getattr(tables, name)(known) + "\n")
     write_text(audit.BUILD / "table-numbers.tex", tables.of_numbers(found))
+    write_text(audit.BUILD / "numbers.csv", tables.all_numbers(found))
     print("drawing", flush=True)
     for name, (draw, height) in figures.DRAWN.items():
         save(figures.fit(draw(known), height), audit.BUILD / f"figure-{name}.pdf")

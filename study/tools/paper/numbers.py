@@ -114,7 +114,7 @@ def _design(known):
             "least": of_rows(lambda rows: number(rows.ratio.iloc[0]), table, timed.nsmallest(1, "ratio")),
             "controls": Number(_controls(known), "map/controls, families/controls", tuple(
                 name for part in ("map", "families") for name in _records(known.tables(part)["controls"]))),
-            "spread": Number(_spread(known), "map/spread")}
+            "spread": Number(_spread(known), "map/spread", _records(known.tables("map")["spread"]))}
 
 
 def _controls(known):
@@ -137,7 +137,7 @@ def _machines(known):
     """What the compared sets say together, and what makes their machines differ."""
     sets = known.compared or [known]
     shares = agreement.shares(agreement.mechanisms(sets, known.agreed))
-    kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
+    kinds = [*known.on_the_map.values()]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
     rates, gained = [machine.rates(one) for one in sets], machine.gains(sets, GAINED)
     beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
@@ -145,12 +145,16 @@ def _machines(known):
     steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}
     told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in sets]
     on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, sets[1:]))
-    where = "of " + ", ".join(one.folder.name for one in sets)
-    found = {name: Number(text, f"{table} {where}") for table, texts in (
-        ("set.json", {"count": str(len(told)), "names": "; ".join(told), "first": sets[0].folder.name, "commit": sets[0].context["commit"][:10]}),
-        ("families/scenes", {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
-        ("map/tidy", {name: str(one) for name, one in verdicts.items()}),
-        ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in texts.items()}
+    where, asked = "of " + ", ".join(one.folder.name for one in sets), {one.question.scene for one in known.agreed}
+    told_by = lambda part, table: [f"{one.folder.name}/{name}" for one in sets for rows in [one.tables(part)[table]]
+                                   for name in _records(rows[rows.scene.isin(asked)])]
+    bounds = [f"{one.folder.name}/{record.name}" for one in sets for record in [machine.rated(one)] if record]
+    found = {name: Number(text, f"{table} {where}", tuple(records)) for table, records, texts in (
+        ("set.json", (), {"count": str(len(told)), "names": "; ".join(told), "first": sets[0].folder.name, "commit": sets[0].context["commit"][:10]}),
+        ("families/scenes", told_by("families", "scenes"),
+         {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
+        ("map/tidy", told_by("map", "tidy"), {name: str(one) for name, one in verdicts.items()}),
+        ("raw/limit", bounds, {name: on(one) for name, one in beside.items()})) for name, text in texts.items()}
     return found if known.compared else dict.fromkeys(found)
 
 

@@ -6,6 +6,7 @@ from textwrap import shorten
 import pandas
 from scipy.stats import gmean
 
+from analysis.core.gather import gather
 from analysis.core.text import between, bounded, ends, number
 from analysis.engines.equal_error import SIDES, lacking
 from analysis.engines.figures import title
@@ -37,10 +38,20 @@ TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "
 
 
 def of_numbers(found):
-    """The appendix: an entry a number, to which its uses link."""
-    records = lambda one: one.records[0].removesuffix(".json") + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "") if one.records else ""
-    return "".join(rf"\numberentry{{\hypertarget{{where:{name}}}{{{tex(name)}}}}}{{{tex(shorten(one.text, 28, placeholder=' …'))}}}"
-                   rf"{{{tex('; '.join(filter(None, (one.table, records(one)))))}}}" + "\n" for name, one in found.items())
+    """The appendix: an entry a source, with its first record and the numbers that come from it, to which their uses link."""
+    entries = []
+    for (table, records), names in gather(((one.table, one.records), name) for name, one in found.items()).items():
+        first = "".join(f"; {name.removesuffix('.json')}" for name in records[:1]) + (f" +{len(records) - 1}" if len(records) > 1 else "")
+        numbers = "; ".join(rf"\hypertarget{{where:{name}}}{{\textbf{{{tex(name)}}}}} {tex(shorten(found[name].text, 20, placeholder=' …'))}"
+                            for name in names)
+        entries.append(rf"\numberentry{{{tex(table + first)}}}{{{numbers}}}" + "\n")
+    return "".join(entries)
+
+
+def all_numbers(found):
+    """Each number with all its records, as CSV."""
+    rows = [(name, one.text, one.table, " ".join(one.records)) for name, one in found.items()]
+    return pandas.DataFrame(rows, columns=["number", "value", "table", "records"]).to_csv(index=False)
 
 
 def table(rows, columns, long=False):
@@ -193,4 +204,4 @@ def mechanisms(known):
                      "" if mine is None else number(1 / mine.to_rival) + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
                                                                           if bounded(mine.to_rival_low, mine.to_rival_high) else "")))
     return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{30mm}", "step, µs": "r",
-                        "next ÷ it": "l", "as fast": r"P{28mm}", "own": "l"}, long=True)
+                        "next ÷ it": "l", "as fast": r"P{26mm}", "own": "l"}, long=True)
