@@ -1,6 +1,7 @@
 # Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured number.
 import json
 import re
+from statistics import median
 
 import numpy
 
@@ -53,20 +54,30 @@ def million(records):
     return "\n".join(lines) + "\n"
 
 
+def gain(part):
+    """Of the runs of a part, by one job and by two in turns: how many times as many lanes a second two jobs have, turn by turn."""
+    one, two = ([row["wall_s"] for row in part if row["jobs"] == jobs] for jobs in (1, 2))
+    ratios = [first / second for first, second in zip(one, two)]
+    return {"turns": len(ratios), "median": median(ratios), "least": min(ratios), "most": max(ratios)}
+
+
 def _large_sweep(record):
-    lanes, nodes, (one, two), whole = record["lanes"], record["nodes"], record["part"], record["whole"]
-    mine, merge, context = one["lanes"], record["merge"]["wall_s"], record["context"]
+    lanes, nodes, part, whole = record["lanes"], record["nodes"], record["part"], record["whole"]
+    mine, merge, context, ratio = part[0]["lanes"], record["merge"]["wall_s"], record["context"], gain(part)
+    one, two = (median(row["wall_s"] for row in part if row["jobs"] == jobs) for jobs in (1, 2))
     return {"implementation": f"`{record['implementation']}`",
             "lanes": f"{lanes}",
             "lanes of the part of one node": f"{mine}",
-            "lanes a second, the part by one job": number(mine / one["wall_s"]),
-            "the part by two jobs": number(mine / two["wall_s"]),
+            "lanes a second, the part by one job": number(mine / one),
+            "the part by two jobs": number(mine / two),
+            "two jobs over one, turn by turn: median (least to most)":
+                f"{number(ratio['median'])} ({number(ratio['least'])} to {number(ratio['most'])}; turns: {ratio['turns']})",
             "all lanes by two jobs": number(lanes / whole["wall_s"]),
-            "all lanes by two jobs, projected from the part, s": number(lanes / mine * two["wall_s"]),
+            "all lanes by two jobs, projected from the part, s": number(lanes / mine * two),
             "observed, s": number(whole["wall_s"]),
             "their table written (`merge-sweep`), s": number(merge),
-            "projected: parts on as many nodes at once, then the table, s": f"{number(two['wall_s'] + merge)} ({nodes} nodes)",
-            "memory of the largest process, MB": number(max(row["memory_mb"] for row in (one, two, whole, record["merge"]))),
+            "projected: parts on as many nodes at once, then the table, s": f"{number(two + merge)} ({nodes} nodes)",
+            "memory of the largest process, MB": number(max(row["memory_mb"] for row in (*part, whole, record["merge"]))),
             "outcomes": ", ".join(f"{count} {name}" for name, count in sorted(record["outcomes"].items())),
             "table, MB": number(record["bytes"] / 1e6),
             "its SHA-256 begins with": record["table"][:16],
