@@ -120,10 +120,6 @@ def _no_number(word):
 
 
 def _columns(path, keep):
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = csv.reader(file)
-        names = next(rows, [])
-        chosen = [place for place, name in enumerate(names) if keep in (("outputs",), ("all",)) or name in ("t", *keep)]
-        values = [[float(row[place]) for place in chosen] for row in rows]
-    # JSON has no number that is not finite.
-    return {names[place]: [row[at] if math.isfinite(row[at]) else None for row in values] for at, place in enumerate(chosen)}
+    with open(path, newline="", encoding="utf-8") as file:  # JSON has no number that is not finite
+        return {name: [value if math.isfinite(value) else None for value in map(float, values)]
+                for name, *values in zip(*csv.reader(file), strict=True) if keep in (("outputs",), ("all",)) or name in ("t", *keep)}
