@@ -24,19 +24,26 @@ Claim = namedtuple("Claim", "name text part where found merged", defaults=(False
 
 
 def claims():
-    return (Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", _agree),
-        Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", _sparse),
+    return (Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", lambda known: _counted(
+            known.tables("families")["scenes"].loc[lambda rows: (rows.status == "ok") & rows.to_rival.notna()].verdict == "agrees",
+            eq, "{count} of {total} agree")),
+        Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", lambda known: _counted(
+            ~real_mechanisms(known).winner.isin(known.registry.dense), lambda count, total: 2 * count > total,
+            "more than half; here {count} of {total}")),
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
         Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
-        Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", _compared, True),
+        Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", lambda known: (
+            True if known.compared else None, f"two or more; here {', '.join(one.folder.name for one in known.compared) or 'one'}"), True),
         Claim("machines", "On nine of ten mechanisms one library is fastest, or not shown to be over 5 % slower, on every processor compared",
               "families", "machines", _machines, True),
         Claim("vector", "On processors whose widest vectors do more, dense kernels gain more than code that works number by number",
               "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out, on each machine", "families", "price", _rule),
-        Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
+        Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", lambda known: _counted(
+            known.tables("stability")["maps"].loc[lambda rows: (rows.penalty_asked == "auto") & (rows.precision == "double")
+                                                  & (rows.status != "dropped")].status == "ok", eq, "all; here {count} of {total}")),
         Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window",
               _of_2008(lambda one: PAPER_PENALTY < one.lower, "the window begins above {factor}; here at {lower}")),
         Claim("open", "At the largest size and the step of 2008 the estimated window of the penalty form is open", "stability", "window",
@@ -44,7 +51,9 @@ def claims():
         Claim("mixed", "Mixed precision is nowhere shown to gain a fifth at the same error class", "accuracy", "error", _mixed),
         Claim("compiled", "The fastest code of our own is shown to be faster than the fastest library on every mechanism", "families", "own", _compiled),
         Claim("batches", "Batches have the gain that was asked of them", "limit", "own", _batches),
-        Claim("engines", "No engine is shown to be faster at equal error than the fastest library", "engines", "own", _engines),
+        Claim("engines", "No engine is shown to be faster at equal error than the fastest library", "engines", "own", lambda known: _counted(
+            compared(known.tables("engines")["equal_error"], "library").loc[lambda rows: rows.high < math.inf].high < 1,
+            lambda count, _: count == 0, "none; here {count} of {total} comparisons that have an interval")),
         Claim("quiet", "The machine itself lost no deadline", "realtime", "latency", _quiet))
 
 
@@ -52,16 +61,6 @@ def _counted(good, wanted, text):
     """(whether as many rows are good as is wanted, None without rows; the text with both numbers)"""
     count, total = int(good.sum()), len(good)
     return (wanted(count, total) if total else None), text.format(count=count, total=total)
-
-
-def _agree(known):
-    rows = known.tables("families")["scenes"]
-    return _counted(rows[(rows.status == "ok") & rows.to_rival.notna()].verdict == "agrees", eq, "{count} of {total} agree")
-
-
-def _sparse(known):
-    sparse = ~real_mechanisms(known).winner.isin(known.registry.dense)
-    return _counted(sparse, lambda count, total: 2 * count > total, "more than half; here {count} of {total}")
 
 
 def _single(known):
@@ -87,10 +86,6 @@ def _phases(known):
     rows = profiled(known).loc[lambda rows: rows.implementation == HYBRID]
     share = phases(rows.iloc[0])["factorization"] if len(rows) else None
     return (None, "") if share is None else (share > 0.5, f"more than half; here {percent(share)}")
-
-
-def _compared(known):
-    return (True if known.compared else None), f"two or more; here {', '.join(one.folder.name for one in known.compared) or 'one'}"
 
 
 def _machines(known):
@@ -122,12 +117,6 @@ def _rule(known):
     return None, ""
 
 
-def _automatic(known):
-    rows = known.tables("stability")["maps"].loc[
-        lambda rows: (rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
-    return _counted(rows.status == "ok", eq, "all; here {count} of {total}")
-
-
 def _of_2008(holds, text):
     """Of the estimated window of the largest size at the step of 2008."""
     def found(known):
@@ -156,11 +145,6 @@ def _batches(known):
     verdicts = set(rows.verdict)  # what is held where it was measured is not known of all
     return (True if verdicts == {limits.HELD} else None if verdicts <= {limits.HELD, limits.PARTLY} else False), "; ".join(
         f"{row.sign} {number(row.bound)}; here {between(row.worst, row.low, row.high)}" for row in rows.itertuples())
-
-
-def _engines(known):
-    rows = compared(known.tables("engines")["equal_error"], "library").loc[lambda rows: rows.high < math.inf]
-    return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons that have an interval")
 
 
 def _quiet(known):
