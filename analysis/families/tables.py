@@ -30,9 +30,8 @@ def build(records, view):
                        | {"look_us": looks.get(name, {}).get("step_us")}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
-        for layer in layers:
-            timing.holm([row for row in winners if (row["scheme"], row["layer"]) == (scheme, layer)])
         twins += [{"scheme": scheme} | row for row in controls_in(by_role.get(scheme, []))]
+    timing.holm(winners, "scheme", "layer")
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from analysis.core import schema, timing
 from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
-from analysis.core.gather import gather
 from analysis.core.view import context_in
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
@@ -152,14 +151,7 @@ def measured(folder, name, known):
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one, said, found in zip(asked, verdicts, records)
             for row in _rows(one, known, said, found)]
-    return _finish(folder, column, lab, at_once(rows))
-
-
-def at_once(rows):
-    """Marks which rows stay decided when all of a part, form and layer are asked at once, as the set's own tables do."""
-    for asked in gather(((row["part"], row["scheme"], row["layer"]), row) for row in rows).values():
-        timing.holm(asked)
-    return rows
+    return _finish(folder, column, lab, timing.holm(rows, "part", "scheme", "layer"))
 
 
 def contexts(folder, contenders):
