@@ -63,13 +63,15 @@ def digest_of(records):
     return digest("\n".join(f"{one.name} {one.digest}" for one in records))
 
 
-def records_of(folder, part, context):
+def records_of(folder, part, context, drawn=False):
     """All records of a part, by name; StudyError naming a table that was changed, a record that was or that is of another machine or
-    commit than the set's `context`, or if those of a stored set are not those that its tables were made of."""
+    commit than the set's `context`, or if they are not those that its tables were made of: in a stored set, or one that must be `drawn`."""
     need_unchanged(folder, part)
     found, archive, kept = read_part(folder, part), archive_of(folder, part), Path(folder) / part / DIGESTS
-    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(found):
-        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
+    known = read_object(kept, records=str)["records"] if kept.exists() else ""
+    if known != digest_of(found) and (drawn or known and archive.exists()):
+        mend = f"{archive} holds other records than {kept} says: restore both" if archive.exists() else f"run study/figures {folder}"
+        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {mend}")
     for record in found:
         need_same_origin(record, context, f"{folder}/raw/{part}")
     return found
