@@ -69,7 +69,6 @@ def new(arguments):
         print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
     print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
 bottom, and climb the ladder after each function. CONTRIBUTING.md has the tests, and what a pull request shows.""")
-    return 0
 
 
 def listed():

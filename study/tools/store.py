@@ -54,7 +54,6 @@ def store(arguments):
     if pictures:  # others that study/figures draws are ignored
         print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
     print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")
-    return 0
 
 
 def short(processor):

@@ -70,7 +70,6 @@ def merge(arguments):
     for layer, (cells, inner) in found.items():
         print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
     print(f"page: {options.to / 'index.html'}")
-    return 0
 
 
 def _drawn(libraries, sets, path):
