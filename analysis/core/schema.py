@@ -26,8 +26,10 @@ def read(path):
     return found
 
 
-def conform(frame, columns, what):
-    """The table with exactly these columns, in this order and of these types; what it lacks is empty."""
+def conform(rows, columns, what):
+    """Rows, or a table of them, as a table with exactly these columns, in this order and of these types; what they lack is empty."""
+    import pandas  # who only looks whether tables were changed waits for no half a second
+    frame = pandas.DataFrame(rows)
     if unknown := [name for name in frame.columns if name not in columns]:
         raise StudyError(f"{what}: columns that its schema does not know: {', '.join(unknown)}")
     frame = frame.reindex(columns=list(columns))
@@ -84,7 +86,7 @@ def read_table(folder, part, name):
         raise StudyError(f"{kept} is missing: study/figures makes the tables again from the records")
     need_unchanged(folder, part)
     columns = of_part(part)[name]
-    import pandas  # who only looks whether tables were changed waits for no half a second
+    import pandas
     try:
         frame = pandas.read_csv(path, dtype=str, keep_default_na=False, usecols=columns.__contains__)
     except (OSError, ValueError) as error:

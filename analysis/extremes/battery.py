@@ -1,8 +1,6 @@
 # The battery's table: every run beside the truth.
 import shlex
 
-import pandas
-
 from analysis.core.files import StudyError
 from analysis.core.outcomes import GOOD, of_run
 from analysis.extremes import cells, judge, trials, verdicts
@@ -38,7 +36,7 @@ def table(records, registry):
             motion = judge.true_motion(cell, references.get(cell.name, {}), times)
             truths[same] = judge.allowed(cell, motion[0]), *motion
         rows.append(_row(record, cell, settings[record.role], *truths[same]))
-    return pandas.DataFrame(rows)
+    return rows
 
 
 def _row(record, cell, setting, limit, solutions, own, truth):

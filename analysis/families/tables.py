@@ -2,8 +2,6 @@
 # elimination leaves to do.
 from collections import Counter
 
-import pandas
-
 from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.controls import controls_in
@@ -35,11 +33,10 @@ def build(records, view):
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]
-    tables = {name: conform(pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place)))), schema[name], f"families/{name}.csv")
+    tables = {name: conform(sorted(rows, key=lambda row: place.get(row["scene"], len(place))), schema[name], f"families/{name}.csv")
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
     return tables | judged(tables, registry) | {
-        "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])), "orderings": orderings(about),
-        "controls": pandas.DataFrame(twins)}
+        "growth": growth(tables["scenes"], tables["mechanisms"]), "orderings": orderings(about), "controls": twins}
 
 
 def family_of(scene):
@@ -79,8 +76,8 @@ def growth(scenes, mechanisms):
 
 def orderings(about):
     """A row for each scene and order of elimination, as `mbs describe` computes them."""
-    return pandas.DataFrame([
+    return [
         {"scene": scene, "n": record.output.get("variables"), "ordering": name, "factor": one["factor_nonzeros"],
          "per_column": one["per_column"], "flops": one["flops"], "height": one["height"], "record": record.name}
         for scene, record in about.items()
-        for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one])
+        for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one]

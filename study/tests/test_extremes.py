@@ -267,8 +267,7 @@ def made(studyset):
     """The tables as the schema has them."""
     found = tables.build(records.read_part(studyset.folder, "extremes"), View(studyset.folder, "extremes"))
     schema = of_part("extremes")
-    return {name: conform(frame if len(frame.columns) else frame.reindex(columns=list(schema[name])), schema[name], name)
-            for name, frame in found.items()}
+    return {name: conform(rows, schema[name], name) for name, rows in found.items()}
 
 
 def test_the_battery_on_the_real_program_is_resumed(studyset, monkeypatch):

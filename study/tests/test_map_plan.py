@@ -3,7 +3,6 @@ import shutil
 import tempfile
 from types import SimpleNamespace
 
-import pandas
 import pytest
 import yaml
 
@@ -51,8 +50,7 @@ def made(lab):
     folder = lab.set.folder
     view, known = View(folder, "map"), schema.of_part("map")
     found = tables.build(records.read_part(folder, "map"), view)
-    return {name: schema.conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(known[name])), known[name], name)
-            for name, frame in found.items()}
+    return {name: schema.conform(rows, known[name], name) for name, rows in found.items()}
 
 
 def statuses(tidy, scene):

@@ -90,7 +90,7 @@ def table(folder, part, name):
     kept = folder / part / schema.DIGESTS
     if kept.exists() and name in read_object(kept, tables=dict)["tables"]:
         return schema.read_table(folder, part, name)
-    return schema.conform(pandas.DataFrame(), schema.of_part(part)[name], f"{part}/{name}.csv")
+    return schema.conform((), schema.of_part(part)[name], f"{part}/{name}.csv")
 
 
 def carried(main, other):
