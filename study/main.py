@@ -6,7 +6,7 @@ import signal
 import sys
 
 from analysis.core.files import ROOT, StudyError, read_object
-from analysis.core.parts import parts
+from analysis.core.view import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory

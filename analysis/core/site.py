@@ -12,11 +12,10 @@ import matplotlib.pyplot as plt
 from analysis.core import schema
 from analysis.core.controls import disturbance, said as said_of_controls, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
-from analysis.core.parts import pages, parts
 from analysis.core.records import without_collection
 from analysis.core.style import save
 from analysis.core.text import between, ends, number
-from analysis.core.view import View
+from analysis.core.view import View, pages, parts
 
 HERE = Path(__file__).parent
 

@@ -3,7 +3,7 @@ import importlib
 from collections import namedtuple
 
 from analysis.core.files import ANY, MEND, ROOT, StudyError, need_kind, read_yaml
-from analysis.core.parts import parts
+from analysis.core.view import parts
 
 FOLDER = ROOT / "study" / "profiles"
 MENDED = f"{FOLDER.relative_to(ROOT) / 'quick.yaml'} explains every setting"

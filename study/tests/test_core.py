@@ -22,11 +22,10 @@ import yaml
 
 from analysis.core import records, schema, site
 from analysis.core.files import MEND, ROOT, StudyError, digest, read_json, read_object, write_json, write_text
-from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.style import save
 from analysis.core.text import number
-from analysis.core.view import View, facts_of
+from analysis.core.view import View, facts_of, parts
 from study import main
 from study.core import child, executor, front, locks, machine, profile, studyset
 from study.core.cell import Cell, Contender, by_environment, on_usual_pairs

@@ -10,8 +10,7 @@ import yaml
 
 from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
-from analysis.core.parts import parts
-from analysis.core.view import View
+from analysis.core.view import View, parts
 from study.tests.conftest import study
 from study.tools import fragments
 

@@ -3,7 +3,7 @@ from urllib.parse import parse_qs
 
 import pytest
 
-from analysis.core.parts import parts
+from analysis.core.view import parts
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 PAGES = ["index", "explore", *parts()]

@@ -8,7 +8,7 @@ import subprocess
 
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_object
-from analysis.core.parts import parts
+from analysis.core.view import parts
 from study.core import locks
 from study.core.options import Parser, directory
 from study.core.profile import columns_of
