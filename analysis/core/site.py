@@ -34,15 +34,14 @@ def write_part(folder, part):
         save(figure, path, about)
         figures[name] = base64.b64encode(path.read_bytes()).decode()
     plt.close("all")
-    known, others = _module(part, "page").context(tables, view), told(disturbance(found))
+    page, others = _module(part, "page"), told(disturbance(found))
+    known = page.context(tables, view)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part),
         control="" if "controls" in known else said_of_controls(tables.get("controls", ()))))
-    said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
-        "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],
-        "disturbance": others})
-    for name, known in (said.files(tables, view) if hasattr(said, "files") else {}).items():
+        "answers": page.answers(tables, view), "cases": page.cases(tables, view) if hasattr(page, "cases") else [], "disturbance": others})
+    for name, known in (page.files(tables, view) if hasattr(page, "files") else {}).items():
         write_json(folder / part / name, known)
 
 
@@ -71,7 +70,7 @@ def write_index(folder, part=None):
 
 
 def answers_of(folder):
-    """{part: what its sentences.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
+    """{part: what its page.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
     return {part: read_object(folder / part / "answers.json", answers=list, cases=list) if (folder / part / "answers.json").exists() else None
             for part in parts()}
 

@@ -10,7 +10,7 @@ from analysis.core import site
 from analysis.core.files import ROOT, StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.extremes import battery, cells, judge, page, sentences, tables, trials, verdicts
+from analysis.extremes import battery, cells, judge, page, tables, trials, verdicts
 from analysis.extremes.motions import Chain, Flat
 from analysis.tests.tables_of import tables_of
 
@@ -90,7 +90,7 @@ def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
     assert [(row["kind"], row["mechanisms"], row["runs"]) for row in counts] == [(STANDARD.axis, 1, 1), ("driven four-bar", 1, 4)]
     [wrong] = verdicts.listed(found, verdicts.SILENT)
     assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
-    [text] = [one["text"] for one in sentences._battery(found)]
+    [text] = [one["text"] for one in page._of_battery(found)]
     assert "In 5 runs of 2 mechanisms of 2 kinds: 2 silent wrongs and 1 false alarm." in text
     assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
@@ -193,9 +193,9 @@ def test_cells_in_which_nobody_is_right_are_found():
 def test_settings_are_compared_where_all_were_tried():
     found = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))["battery"]
     assert verdicts.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
-    [answer] = sentences._helps(found)
+    [answer] = page._helps(found)
     assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in answer["text"]
-    assert list(sentences._helps(found[found.setting != "rattle4"])) == []
+    assert list(page._helps(found[found.setting != "rattle4"])) == []
 
 
 def stale(number, times):
@@ -235,15 +235,15 @@ def test_page_and_answers_of_all_columns():
     assert 'class="matrix"' in text
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "holds" in text and "Not measured" not in text
-    said = [one["text"] for one in sentences.answers(found, VIEW)]
+    said = [one["text"] for one in page.answers(found, VIEW)]
     assert said[0].startswith("In 5 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
     assert any("right most often" in text for text in said) and any("1.2 times the time" in text for text in said)
-    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
-    assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
+    assert {one["anchor"] for one in page.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
+    assert all(f'id="{one["anchor"]}"' in text for one in page.answers(found, VIEW))
 
 
 def test_a_page_of_nothing_says_so():
     found = made()
     text = render(found)
     assert text.count("Not measured") == 2
-    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""]
+    assert [one["anchor"] for one in page.answers(found, VIEW)] == [""]

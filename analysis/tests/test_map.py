@@ -11,7 +11,7 @@ from analysis.core.files import ROOT, write_json
 from analysis.core.records import Record
 from analysis.core.style import DENSE, SPARSE, Look
 from analysis.core.timing import differing
-from analysis.map import figures, page, sentences, summary, tables
+from analysis.map import figures, page, summary, tables
 from analysis.map.cells import map_cells, table
 from analysis.map.figures import bounds, broken
 from analysis.map.timed import AFTER, Scene, timed_rows
@@ -124,14 +124,14 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
     for size, first in ((10, 2.0), (22, 3.0), (50, 0.5)):
         rows += cell(A, size, first, first, first) + cell(B, size, 1.0, 1.0, 1.0)
     groups = summary.by_size(some(rows), [A, B])
-    assert list(sentences.by_outcome(groups)) == [
+    assert list(page.by_outcome(groups)) == [
         f"{B} is the fastest library at n = 10 to 22, 2.00 to 3.00 times ahead of the second.",
         f"{A} is the fastest library at n = 50, 2.00 times ahead of the second."]
 
 
 def test_sizes_that_tell_nothing_are_named():
     groups = summary.by_size(some(cell(A, 10, 2.0) + cell(B, 10, 1.0) + failed(A, 22, "dropped") + failed(B, 22, "dropped")), [A, B])
-    assert list(sentences.by_outcome(groups)) == ["At n = 10 too few processes were timed to tell.", "At n = 22 nobody was timed."]
+    assert list(page.by_outcome(groups)) == ["At n = 10 too few processes were timed to tell.", "At n = 22 nobody was timed."]
 
 
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
@@ -201,7 +201,7 @@ def test_records_become_tables_and_a_page(tmp_path):
 def test_without_times_the_answer_says_so():
     found = some([])
     empty = {"tidy": found.tidy, "claims": pandas.DataFrame({"verdict": []})}
-    [answer] = sentences.answers(empty, found.view)
+    [answer] = page.answers(empty, found.view)
     assert "Nothing was timed" in answer["text"]
 
 

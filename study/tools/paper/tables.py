@@ -12,7 +12,7 @@ from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
 from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
-from analysis.families.sentences import cases
+from analysis.families.page import cases
 from analysis.map import ledger, summary
 from study.tools.merge import machine
 from study.tools.paper.numbers import GAINED, led, losses, real, real_mechanisms
