@@ -4,7 +4,7 @@ import math
 from analysis.core.gather import gather
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
-from analysis.extremes import battery, trials, verdicts
+from analysis.extremes import battery, trials
 from analysis.extremes.cells import FORMS
 
 WORDS = {"silent": "silently wrong", "other": "other failure", "unjudged": "ok or plausible, not judged", "ok": "ok or plausible"}
@@ -18,16 +18,16 @@ def context(tables, view):
 
 
 def _battery(table):
-    runs, extreme = verdicts.judged(table), battery.extreme(table)
+    runs, extreme = battery.judged(table), battery.extreme(table)
     if table.empty:
         return None
     cells = matrix(extreme)
-    return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": verdicts.kinds(runs), "verdicts": verdicts.ALL,
-            "lists": {verdict: verdicts.listed(runs, verdict) for verdict in (verdicts.SILENT, verdicts.FALSE)}, "left_out": left_out(table),
+    return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": battery.kinds(runs), "verdicts": battery.ALL,
+            "lists": {verdict: battery.listed(runs, verdict) for verdict in (battery.SILENT, battery.FALSE)}, "left_out": left_out(table),
             "nobody": nobody(extreme), "matrix": cells, "columns": list(gather(  # of settings that are equal in all cells
                 (tuple(row.get(setting) for row in cells.values()), setting) for setting in extreme.setting.unique()).values()),
             "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
-            "settings": [(name, len(rows), verdicts.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
+            "settings": [(name, len(rows), battery.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
 
 
 def matrix(extreme):
@@ -45,8 +45,8 @@ def matrix(extreme):
 def nobody(extreme):
     """[(axis, value, {outcome: count})] of cells in which no run is right."""
     tried = extreme[~extreme.status.isin(("excluded", "dropped", "unsupported"))]
-    return [(axis, value, rows.status.mask(rows.verdict == verdicts.SILENT, verdicts.SILENT).value_counts().to_dict())
-            for (axis, value), rows in tried.groupby(["axis", "value"], sort=False) if not (rows.verdict == verdicts.RIGHT).any()]
+    return [(axis, value, rows.status.mask(rows.verdict == battery.SILENT, battery.SILENT).value_counts().to_dict())
+            for (axis, value), rows in tried.groupby(["axis", "value"], sort=False) if not (rows.verdict == battery.RIGHT).any()]
 
 
 def left_out(table):
@@ -79,10 +79,10 @@ def answers(tables, view):
 
 
 def _of_battery(table):
-    runs = verdicts.judged(table)
+    runs = battery.judged(table)
     if runs.empty:
         return
-    silent, false = (runs[runs.verdict == verdict] for verdict in (verdicts.SILENT, verdicts.FALSE))
+    silent, false = (runs[runs.verdict == verdict] for verdict in (battery.SILENT, battery.FALSE))
     standard = runs.axis.isin(trials.STANDARD)
     wrongly, others = false[standard[false.index]], false[~standard[false.index]]
     text = (f"In {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds: {_some(silent, 'silent wrong')} "
@@ -91,7 +91,7 @@ def _of_battery(table):
         text += f" Bound “no false alarm on standard problems at their own steps”: {_held(wrongly)}, in {standard.sum()} runs."
     if len(others):
         text += f" Other false alarms: {_places(others)}."
-    entries = verdicts.listed(runs, verdicts.SILENT)
+    entries = battery.listed(runs, battery.SILENT)
     text += " Silent wrongs:" * bool(entries) + "".join(f" {one['kind']}, {one['mechanism']}: {one['commands'][0]}." for one in entries[:MOST])
     yield {"anchor": "battery", "text": text + (f" {len(entries) - MOST} more on the page." if len(entries) > MOST else "")}
     if lost := gather((axis, value) for axis, value, _ in nobody(battery.extreme(runs))):
@@ -113,7 +113,7 @@ def _places(rows):
 
 
 def _helps(extreme):
-    if len(shares := verdicts.by_setting(extreme)) > len(FORMS):
+    if len(shares := battery.by_setting(extreme)) > len(FORMS):
         told = [f"“{name}” in {right} of {runs}" for name, (right, runs) in shares.items()]
         yield {"anchor": "settings", "text": f"Where other settings were tried as well, runs are right most often with {', '.join(told[:MOST_HELPFUL])}; "
                f"with {' and '.join(told[list(shares).index(form.name)] for form in FORMS if form.name in shares)}."}
