@@ -1,8 +1,10 @@
 # study/new NAME: writes implementations/NAME/, which compiles and does nothing yet, and its line in the list.
 import re
 import shutil
+from pathlib import Path
 
 from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.text import layout
 from study.core.options import Parser
 
 SKELETON = ROOT / "study" / "tools" / "skeleton"
@@ -57,18 +59,7 @@ def new(arguments):
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    commands = {"study/setup": "if it has not run yet: installs what is missing, builds all",
-                "cmake --build build --target mbs": "after each function",
-                f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
-                "build/mbs reference four-bar:1 --moved": "the reference's numbers",
-                f"build/mbs check --implementation {options.name}": "the whole gate",
-                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees",
-                f"study/add {options.name}": "beside the leaders, once study/run --part map has run on this machine"}
-    print(f"implementations/{options.name}/ is written and in the list. Next:")
-    for command, what in commands.items():
-        print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
-    print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
-bottom, and climb the ladder after each function. CONTRIBUTING.md has the tests, and what a pull request shows.""")
+    print(layout(Path(__file__).with_name("new.txt.j2")).render(name=options.name))
 
 
 def listed():
