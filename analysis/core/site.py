@@ -12,7 +12,6 @@ import matplotlib.pyplot as plt
 from analysis.core import schema
 from analysis.core.controls import disturbance, said as said_of_controls, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
-from analysis.core.records import without_collection
 from analysis.core.style import save
 from analysis.core.text import between, ends, number
 from analysis.core.view import View, pages, parts
@@ -20,7 +19,6 @@ from analysis.core.view import View, pages, parts
 HERE = Path(__file__).parent
 
 
-@without_collection()
 def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
@@ -51,7 +49,6 @@ def write_tables(view):
     return schema.write_tables(view.folder, view.part, _module(view.part, "tables").build(found, view), found), found
 
 
-@without_collection()
 def write_index(folder, part=None):
     """index.html: the answers of the parts that are done; the further pages, where all that is new is `part` only those that are made
     of it; and a page for each of the other parts."""
