@@ -46,7 +46,7 @@ def _formulas(steps):
 
 
 def answers(tables, view):
-    scenes, mine = tables["scenes"], best_form(tables["winners"], "libraries")
+    scenes, mine = tables["scenes"], best_form(tables["winners"])
     if mine.empty:
         return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
     real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill

@@ -70,7 +70,7 @@ def listed(names):
 
 def real_mechanisms(known):
     """Rows of the winners among libraries on mechanisms at their own fill, in the form that each is simulated in."""
-    rows = best_form(known.tables("families")["winners"], "libraries")
+    rows = best_form(known.tables("families")["winners"])
     return rows[~rows.family.str.contains("filled")]
 
 
