@@ -35,7 +35,7 @@ class Record:
     context: dict    # machine, build and BLAS of the run
     output: dict = field(default_factory=dict)  # what the program printed
     series: dict = field(default_factory=dict)  # {column: values} of the motion, where the cell keeps some
-    machine: dict = field(default_factory=dict)  # of a timed cell: study/core/machine.py, and "cpu_s", processor time of its process
+    machine: dict = field(default_factory=dict)  # of a timed cell: "steal", "mhz" (study/core/executor.py), "cpu_s", processor time of its process
     digest: str = ""  # of the file's text
 
     column = property(lambda self: self.name.partition("/")[0])

@@ -27,7 +27,7 @@ from analysis.core.style import save
 from analysis.core.text import number
 from analysis.core.view import View, facts_of, parts
 from study import main
-from study.core import child, executor, front, locks, machine, profile, studyset
+from study.core import child, executor, front, locks, profile, studyset
 from study.core.cell import Cell, Contender, by_environment, on_usual_pairs
 from study.core.front import duration
 from study.core.lab import BETWEEN, Lab, cores
@@ -829,7 +829,7 @@ def test_a_file_system_without_locks_is_not_taken_for_another_study(tmp_path, mo
 
 def test_a_busy_machine_is_said_when_a_study_begins(tmp_path, monkeypatch):
     monkeypatch.setattr(locks, "MACHINE", tmp_path)
-    monkeypatch.setattr(machine, "OTHERS", 0.5)  # of two processors
+    monkeypatch.setattr(locks, "OTHERS", 0.5)  # of two processors
     for load, said in ((0.1, []), (1.7, ["the machine is busy (load 1.7 over the last minute): times may be too long"])):
         monkeypatch.setattr(os, "getloadavg", lambda load=load: (load, 0, 0))
         told = []
