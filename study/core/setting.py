@@ -24,10 +24,8 @@ class Setting:
     @property
     def needs(self):
         """The words of "settings" in `mbs list --json` that a variant must have: of Registry.serves."""
-        found = {self.scheme.rstrip("46")}
-        for option, value in self.changes:
-            found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
-        return found - {"penalty", "double"}
+        asked = (value if option == "precision" else option for option, value in self.changes if option not in EVERYONE)
+        return {self.scheme.rstrip("46"), *asked} - {"penalty", "double"}
 
     # As one types it, without what is the default.
     typed = property(lambda self: " ".join(self.words()).removeprefix("--scheme penalty").strip())
