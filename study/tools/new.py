@@ -3,12 +3,13 @@ import re
 import shutil
 from pathlib import Path
 
-from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.files import ROOT, StudyError, read_yaml, write_text
 from analysis.core.text import layout
 from study.core.options import Parser
 
 SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
+LIBRARIES = read_yaml(SKELETON.with_name("libraries.yaml"))
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const
 consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit
@@ -17,21 +18,6 @@ public register reinterpret_cast requires return short signed sizeof static stat
 throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
 TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
          "registry", "implementation", "simulation", "available", "unavailable"}  # names of the harness, of C++ and of CMake
-EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
-COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
-IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
-ILAVER = '\nextern "C" void ilaver_(int* major, int* minor, int* patch);\n'
-LAPACK = """std::string lapack_version() {
-  int major = 0, minor = 0, patch = 0;
-  ilaver_(&major, &minor, &patch);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
-}
-
-"""
-# (name, licence, version as C++, include, how it takes what is stored, what the version needs outside of and inside namespaces)
-LIBRARIES = {"none": ("none", "", '""', "", "", "", ""),
-             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE, "", ""),
-             "blas": ("LAPACK", "BSD-3-Clause", "lapack_version()", "", COLUMNS.format("LAPACK"), ILAVER, LAPACK)}
 
 
 def new(arguments):
@@ -48,12 +34,11 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@", "@ILAVER@", "@LAPACK@"),
-                          (options.name, *LIBRARIES[options.library])))
+        values = LIBRARIES[options.library] | {"NAME": options.name}
         for path in sorted(SKELETON.iterdir()):
             stem, _, only = path.name.partition("@")
             if only in ("", options.library):
-                write_text(folder / stem, re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8")))
+                write_text(folder / stem, re.sub("@([A-Z]+)@", lambda one: values[one[1]], path.read_text(encoding="utf-8")))
         before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
         write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:
