@@ -6,7 +6,7 @@ import signal
 import sys
 
 from analysis.core.files import ROOT, StudyError, read_object
-from analysis.core.parts import parts
+from analysis.core.view import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
@@ -17,12 +17,13 @@ TOOLS = {"view": "viewer.main", "advise": "advise.main", "against": "against", "
 
 
 def main(arguments):
+    """The exit status: what a command returns, 0 if that is nothing."""
     command, *rest = arguments
     child.end_on_signals()
     try:
         if command in TOOLS:  # imported only now: that takes a second
-            return getattr(importlib.import_module(f"study.tools.{TOOLS[command]}"), command)(rest)
-        return {"run": run, "figures": figures}[command](rest)
+            return getattr(importlib.import_module(f"study.tools.{TOOLS[command]}"), command)(rest) or 0
+        return {"run": run, "figures": figures}[command](rest) or 0
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -73,7 +74,6 @@ def run(arguments):
         if said := path.exists() and read_object(path).get("disturbance"):
             print(f"{part}: {said}")
     print(f"site: {folder / 'index.html'}")
-    return 0
 
 
 def _run_here(profile, only, chosen, folder, wait):
@@ -98,7 +98,6 @@ def figures(arguments):
         need_records(studyset)
         run_workflow(studyset, {part: [] for part in parts() if part in studyset.facts["parts"]}, stored=True)
     print(f"site: {folder / 'index.html'}")
-    return 0
 
 
 def list_choices():
@@ -115,7 +114,6 @@ def list_choices():
                 print(f"  {variant['name']:28} {variant['description']}")
         if not entry["available"]:
             print(f"  {entry['folder']:28} unavailable: {entry['reason']}")
-    return 0
 
 
 def dry_run(profile, chosen, folder, only, way):
@@ -125,12 +123,10 @@ def dry_run(profile, chosen, folder, only, way):
     columns = profiles.columns_of(profile, chosen)
     left = unfinished(StudySet(folder), columns)
     if way:
-        cluster.dry_run(left)
-        return 0
+        return cluster.dry_run(left)
     for part, names in columns.items():
         print(f"  {part:10} {'at most ' + duration(profiles.planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
     print(f"at most {duration(profiles.planned(left))}, besides set-up and build")
-    return 0
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import yaml
 
 MEND = "restore it from a copy or from git, or begin anew in another directory"
 ROOT = Path(__file__).resolve().parent.parent.parent
+ANY = {...: None}  # of `misfit`: other keys of an object
 RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
 
 
@@ -35,8 +36,8 @@ def read_json(path):
 
 
 def read_object(path, **kinds):
-    """The JSON object in `path`; StudyError naming the file unless it has these keys with values of these kinds (of `misfit`)."""
-    return need_kind(path, read_json(path), kinds)
+    """The JSON object in `path`; StudyError naming the file unless it has these keys, perhaps more, with values of these kinds (of `misfit`)."""
+    return need_kind(path, read_json(path), kinds | ANY)
 
 
 def read_yaml(path, mend=MEND, **kinds):
@@ -46,7 +47,7 @@ def read_yaml(path, mend=MEND, **kinds):
     # Those of YAML, of UTF-8, and whatever a wrong number, date or flag ends in.
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError, RecursionError) as error:
         raise damaged(path, error, mend) from error
-    return need_kind(path, found, kinds, mend)
+    return need_kind(path, found, kinds | ANY, mend)
 
 
 def need_kind(path, found, kind, mend=MEND):
@@ -60,21 +61,23 @@ def damaged(path, what, mend=MEND):
     return StudyError(f"{path} is damaged ({' '.join(str(what).split())[:300]}): {mend}")
 
 
-def misfit(found, kind, name="it"):
+def misfit(found, kind, name=""):
     """What keeps a value from being of a kind, in words; "" if nothing does. A kind is a type, several, [kind of all entries] or {key: kind}: an
-    object that has these keys, but "key?" may be missing, and `...` stands for all others. A flag is no number, a whole number is one."""
+    object that has these keys and no more, but "key?" may be missing, and `...` stands for all others. None is any. A flag is no number, a whole
+    number is one."""
     kinds = kind if isinstance(kind, tuple) else (kind if isinstance(kind, type) else type(kind),)
-    if type(found) not in kinds and not (float in kinds and type(found) is int):
-        return f"{name} is {({dict: 'no object', list: 'no list'}).get(kinds[0], 'of another type')}"
-    inner, within = {}, "" if name == "it" else f"{name}: "
+    if kind is not None and type(found) not in kinds and not (float in kinds and type(found) is int):
+        return f"{name or 'it'} must be of type {' or '.join(one.__name__ for one in kinds)}, is {found!r}"
+    inner, within = [], name and f"{name}: "
     if isinstance(kind, list):
-        inner = {f"{within}entry {place}": (one, kind[0]) for place, one in enumerate(found, 1)}
+        inner = [(one, kind[0], f"entry {place}") for place, one in enumerate(found, 1)]
     elif isinstance(kind, dict):
-        known = {str(key).removesuffix("?"): one for key, one in kind.items() if key is not ...}
-        if missing := [key for key in kind if key is not ... and key not in found and not key.endswith("?")]:
-            return f"{within}{missing[0]} is missing"
-        inner = {f"{within}{key}": (one, known.get(key, kind.get(...))) for key, one in found.items() if key in known or ... in kind}
-    return next(filter(None, (misfit(one, its, key) for key, (one, its) in inner.items())), "")
+        known = {str(key).removesuffix("?"): one for key, one in kind.items()}
+        wrong = [f"{key} is missing" for key in kind if key is not ... and key not in found and not key.endswith("?")]
+        if wrong := wrong + [f"{key} is unknown" for key in found if key not in known and ... not in kind]:
+            return within + ", ".join(wrong)
+        inner = [(one, known.get(key, kind.get(...)), key) for key, one in found.items()]
+    return next(filter(None, (misfit(one, its, f"{within}{key}") for one, its, key in inner)), "")
 
 
 def from_yaml(text):

@@ -2,7 +2,6 @@
 #
 # A record's file is {"sha256": D, "record": {…}} in two lines; D is the digest of the second one's value as it
 # stands there, so that a changed or truncated file is named and never believed.
-import contextlib
 import gc
 import io
 import json
@@ -16,6 +15,7 @@ from pathlib import Path
 
 from analysis.core.files import StudyError, digest, read_bytes, write_text
 
+gc.set_threshold(10**6)  # else garbage is looked for in all records again and again, a quarter of the time that they are made and used
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
 KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}
 MORE = {"output": dict, "series": dict, "machine": dict}  # which a record may have
@@ -35,7 +35,7 @@ class Record:
     context: dict    # machine, build and BLAS of the run
     output: dict = field(default_factory=dict)  # what the program printed
     series: dict = field(default_factory=dict)  # {column: values} of the motion, where the cell keeps some
-    machine: dict = field(default_factory=dict)  # of a timed cell: study/core/machine.py, and "cpu_s", processor time of its process
+    machine: dict = field(default_factory=dict)  # of a timed cell: "steal", "mhz" (study/core/executor.py), "cpu_s", processor time of its process
     digest: str = ""  # of the file's text
 
     column = property(lambda self: self.name.partition("/")[0])
@@ -109,19 +109,6 @@ def archive_of(folder, part):
     return Path(folder) / "raw" / f"{part}.tar.xz"
 
 
-@contextlib.contextmanager
-def without_collection():
-    """Where many records are made or used: garbage would be looked for in all of them again and again, a quarter of the time."""
-    used = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if used:
-            gc.enable()
-
-
-@without_collection()
 def read_part(folder, part):
     """All records of a part, by name; of a stored set from its archive."""
     archive = archive_of(folder, part)

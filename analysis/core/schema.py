@@ -26,8 +26,10 @@ def read(path):
     return found
 
 
-def conform(frame, columns, what):
-    """The table with exactly these columns, in this order and of these types; what it lacks is empty."""
+def conform(rows, columns, what):
+    """Rows, or a table of them, as a table with exactly these columns, in this order and of these types; what they lack is empty."""
+    import pandas  # who only looks whether tables were changed waits for no half a second
+    frame = pandas.DataFrame(rows)
     if unknown := [name for name in frame.columns if name not in columns]:
         raise StudyError(f"{what}: columns that its schema does not know: {', '.join(unknown)}")
     frame = frame.reindex(columns=list(columns))
@@ -63,13 +65,15 @@ def digest_of(records):
     return digest("\n".join(f"{one.name} {one.digest}" for one in records))
 
 
-def records_of(folder, part, context):
+def records_of(folder, part, context, drawn=False):
     """All records of a part, by name; StudyError naming a table that was changed, a record that was or that is of another machine or
-    commit than the set's `context`, or if those of a stored set are not those that its tables were made of."""
+    commit than the set's `context`, or if they are not those that its tables were made of: in a stored set, or one that must be `drawn`."""
     need_unchanged(folder, part)
     found, archive, kept = read_part(folder, part), archive_of(folder, part), Path(folder) / part / DIGESTS
-    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(found):
-        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
+    known = read_object(kept, records=str)["records"] if kept.exists() else ""
+    if known != digest_of(found) and (drawn or known and archive.exists()):
+        mend = f"{archive} holds other records than {kept} says: restore both" if archive.exists() else f"run study/figures {folder}"
+        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {mend}")
     for record in found:
         need_same_origin(record, context, f"{folder}/raw/{part}")
     return found
@@ -82,7 +86,7 @@ def read_table(folder, part, name):
         raise StudyError(f"{kept} is missing: study/figures makes the tables again from the records")
     need_unchanged(folder, part)
     columns = of_part(part)[name]
-    import pandas  # who only looks whether tables were changed waits for no half a second
+    import pandas
     try:
         frame = pandas.read_csv(path, dtype=str, keep_default_na=False, usecols=columns.__contains__)
     except (OSError, ValueError) as error:

@@ -12,16 +12,13 @@ import matplotlib.pyplot as plt
 from analysis.core import schema
 from analysis.core.controls import disturbance, said as said_of_controls, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
-from analysis.core.parts import pages, parts
-from analysis.core.records import without_collection
 from analysis.core.style import save
 from analysis.core.text import between, ends, number
-from analysis.core.view import View
+from analysis.core.view import View, pages, parts
 
 HERE = Path(__file__).parent
 
 
-@without_collection()
 def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
@@ -35,15 +32,14 @@ def write_part(folder, part):
         save(figure, path, about)
         figures[name] = base64.b64encode(path.read_bytes()).decode()
     plt.close("all")
-    known, others = _module(part, "page").context(tables, view), told(disturbance(found))
+    page, others = _module(part, "page"), told(disturbance(found))
+    known = page.context(tables, view)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part),
         control="" if "controls" in known else said_of_controls(tables.get("controls", ()))))
-    said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
-        "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],
-        "disturbance": others})
-    for name, known in (said.files(tables, view) if hasattr(said, "files") else {}).items():
+        "answers": page.answers(tables, view), "cases": page.cases(tables, view) if hasattr(page, "cases") else [], "disturbance": others})
+    for name, known in (page.files(tables, view) if hasattr(page, "files") else {}).items():
         write_json(folder / part / name, known)
 
 
@@ -53,7 +49,6 @@ def write_tables(view):
     return schema.write_tables(view.folder, view.part, _module(view.part, "tables").build(found, view), found), found
 
 
-@without_collection()
 def write_index(folder, part=None):
     """index.html: the answers of the parts that are done; the further pages, where all that is new is `part` only those that are made
     of it; and a page for each of the other parts."""
@@ -72,7 +67,7 @@ def write_index(folder, part=None):
 
 
 def answers_of(folder):
-    """{part: what its sentences.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
+    """{part: what its page.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
     return {part: read_object(folder / part / "answers.json", answers=list, cases=list) if (folder / part / "answers.json").exists() else None
             for part in parts()}
 

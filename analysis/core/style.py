@@ -65,8 +65,8 @@ class Look:
                 "markeredgewidth": 0.6, "markerfacecolor": colour, "markeredgecolor": "white"}
 
 
-def panels(count, columns, wide, high):
-    """(figure, axes of `count` panels, `wide` and `high` inches each, in lines of so many columns); they share their axes."""
+def panels(count, columns, wide, high, title, x="", y=""):
+    """(figure, axes of `count` panels, `wide` and `high` inches each, in lines of so many columns); they share their axes and the labels of these."""
     columns = max(1, min(count, columns))
     lines = -(-count // columns) or 1
     figure, grid = plt.subplots(lines, columns, figsize=(wide * columns + 1.2, high * lines + 0.9), sharex=True, sharey=True,
@@ -74,6 +74,10 @@ def panels(count, columns, wide, high):
     for place, axes in enumerate(grid.flat):
         axes.set_visible(place < count)
         axes.tick_params(labelbottom=place + columns >= count)
+    for label, text in ((figure.supxlabel, x), (figure.supylabel, y)):
+        if text:
+            label(text, fontsize=10)
+    figure.suptitle(title, x=0.01, ha="left", fontsize=12)
     return figure, list(grid.flat[:count])
 
 

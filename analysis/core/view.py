@@ -1,17 +1,33 @@
-# What tables, figures and pages of a part may know of their set besides its records.
+# What tables, figures and pages of a part may know of their set besides its records; the one list of parts, study/parts.yaml.
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
-from analysis.core.files import damaged, need_kind, read_json, read_object, read_yaml
-from analysis.core.parts import parts
+from analysis.core.files import ANY, ROOT, damaged, from_yaml, need_kind, read_json, read_object, read_yaml
 from analysis.core.registry import Registry
 
+LIST = ROOT / "study" / "parts.yaml"
 CONTEXT = dict.fromkeys(("machine", "commit", "cpu_model", "kernel", "compiler", "flags"), str) | {"dirty": (str, bool), "num_cpus": int,
                                                                                                    ...: (str, int, float, bool)}
-VARIANT = {"name": str, "description": str, "terms?": [str], "settings?": [str], "library?": str, "tried_for?": str}
-ENTRY = dict.fromkeys(("folder", "library", "version", "licence", "reason"), str) | {"available": bool, "variants": [VARIANT], "lacking?": {...: str}}
-REGISTRY = {"implementations": [ENTRY], "blas?": [{"name": str, "available": bool, "reason": str}]}
+VARIANT = ANY | {"name": str, "description": str, "terms?": [str], "settings?": [str], "library?": str, "tried_for?": str}
+ENTRY = ANY | dict.fromkeys(("folder", "library", "version", "licence", "reason"), str) | {
+    "available": bool, "variants": [VARIANT], "lacking?": {...: str}}
+REGISTRY = {"implementations": [ENTRY], "blas?": [ANY | {"name": str, "available": bool, "reason": str}]}
+
+
+def parts():
+    """{name: its question}, in order."""
+    return _listed(LIST)["parts"]
+
+
+def pages():
+    """{name: its folder in analysis/ and its title}, of pages beside those of parts whose parts are there."""
+    return {name: one for name, one in _listed(LIST)["pages"].items() if parts().keys() >= set(one["parts"])}
+
+
+@cache
+def _listed(path):
+    return from_yaml(path.read_text(encoding="utf-8"))
 
 
 # What a set says of itself is read here and nowhere else: each function returns what is whole, or names the file in a StudyError.
@@ -36,7 +52,7 @@ def contexts_in(folder):
 
 def settings_in(path):
     """{part: its settings} of a profile. Which they must be depends on the part's plan, and a set may be older than that."""
-    return read_yaml(path, parts={...: {"seconds": float}})["parts"]
+    return read_yaml(path, parts={...: ANY | {"seconds": float}})["parts"]
 
 
 @dataclass(frozen=True)
@@ -65,4 +81,4 @@ class View(Folder):
     def settings(self):
         """The profile's of this part."""
         path = self.folder / "profile.yaml"
-        return need_kind(path, settings_in(path), {self.part: dict})[self.part]
+        return need_kind(path, settings_in(path), ANY | {self.part: dict})[self.part]

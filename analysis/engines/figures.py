@@ -27,7 +27,8 @@ def one_figure(tables, subjects, own):
     if not subjects:
         return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
-    figure, grid = panels(len(subjects), 2 if len(subjects) == 4 else 3, 5.2, 4.1)
+    figure, grid = panels(len(subjects), 2 if len(subjects) == 4 else 3, 5.2, 4.1, "Error against time: engines and ours",
+                          "computation for a simulated second, s", "largest position error, m")
     for axes, subject in zip(grid, subjects):
         _panel(axes, engines[engines.subject == subject.name], ours[ours.subject == subject.name], own)
         axes.set(title=subject.title, xscale="log", yscale="log")
@@ -36,10 +37,7 @@ def one_figure(tables, subjects, own):
             axis.set_major_locator(LogLocator(numticks=15))
     low, high = numpy.log10(grid[0].get_ylim())  # which all share
     grid[0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
-    figure.supxlabel("computation for a simulated second, s", fontsize=10)
-    figure.supylabel("largest position error, m", fontsize=10)
     below(figure, 4, [*_key(engines.engine.unique())])
-    figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
     return figure
 
 

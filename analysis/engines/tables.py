@@ -12,8 +12,8 @@ def build(records, view):
     engines, ours, rounds = (_sorted(frame([row(one) for one in records if one.role == role])) for role in (ENGINE, OURS, ROUND))
     return {"engines": engines.drop(columns=["side", "round", "key"]).rename(columns={"name": "engine"}),
             "ours": ours.drop(columns=["side", "round", "over", "key"]).rename(columns={"name": "implementation", "value": "step"}),
-            "rounds": rounds[list(COLUMNS)].drop(columns=["error", "key"]), "native": pandas.DataFrame(equal_error.native(engines, rounds)),
-            "equal_error": pandas.DataFrame(equal_error.table(engines, ours, rounds, view.registry.own))}
+            "rounds": rounds[list(COLUMNS)].drop(columns=["error", "key"]), "native": equal_error.native(engines, rounds),
+            "equal_error": equal_error.table(engines, ours, rounds, view.registry.own)}
 
 
 def _sorted(table):

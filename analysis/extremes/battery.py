@@ -1,16 +1,15 @@
-# The battery's table: every run beside the truth.
+# The battery's table: every run beside the truth, and what its outcome is worth; runs of a verdict by kind, those that are equal as one.
 import shlex
 
-import pandas
-
 from analysis.core.files import StudyError
-from analysis.core.outcomes import GOOD, of_run
-from analysis.extremes import cells, judge, trials, verdicts
+from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
+from analysis.extremes import cells, judge, trials
 
 NOT_RUN = ("unsupported", "refused", "excluded", "dropped", "unavailable")
 KINDS = ("silent", "other", "crashed", "out-of-memory", "timeout", "diverged", "wrong-branch", "not-converged", "degraded", "unjudged", "ok",
          "refused")  # what a row is shown as, the worst first
 REFERENCE = "reference"  # the role of its runs
+RIGHT, SILENT, FALSE, TOLD, STOPPED = ALL = "right", "silently wrong", "false alarm", "told", "stopped"  # verdicts
 FAR = 0.3  # clearance from a change point, beyond which nothing jumps
 
 
@@ -38,7 +37,7 @@ def table(records, registry):
             motion = judge.true_motion(cell, references.get(cell.name, {}), times)
             truths[same] = judge.allowed(cell, motion[0]), *motion
         rows.append(_row(record, cell, settings[record.role], *truths[same]))
-    return pandas.DataFrame(rows)
+    return rows
 
 
 def _row(record, cell, setting, limit, solutions, own, truth):
@@ -49,15 +48,15 @@ def _row(record, cell, setting, limit, solutions, own, truth):
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
     error = reported if reported > error else error
     jumps_nowhere = cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR
-    verdict = verdicts.verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
+    worth = verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
         solutions and record.done and status not in NOT_RUN) else ""
     command = iter(record.command)  # what repeats the run, without the files that the study reads
     words = (word for word in command if not (word == "--json" or word in ("--trajectory", "--output", "--every") and next(command)))
     return {"axis": cell.axis, "value": cell.label, "implementation": record.cell["contenders"][0], "setting": setting, "status": status,
             "reason": reason, "failed_at": failed_at, "true_error": error, "truth": truth, "truth_error": own, "allowed": limit,
-            "verdict": verdict, "near": cell.near, "wrong_from": since, "steps": cell.steps, "step": cell.step,
+            "verdict": worth, "near": cell.near, "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
-            "command": shlex.join(words) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
+            "command": shlex.join(words) if worth in (SILENT, FALSE) else "", "record": record.name}
 
 
 def extreme(table):
@@ -67,8 +66,48 @@ def extreme(table):
 
 def kind(row):
     """What a row is shown as, one of KINDS."""
-    if row.verdict == verdicts.SILENT:
+    if row.verdict == SILENT:
         return "silent"
     if row.status in GOOD:
         return "ok" if row.true_error == row.true_error else "unjudged"
     return row.status if row.status in KINDS else "other"
+
+
+def verdict(status, error, limit, wrong_from, harmless):
+    """Of a run whose error is allowed to be `limit`. One that stopped (wrong-branch, diverged) before any instant kept at which it
+    was wrong did so in time, unless its cell's motion deserves no such outcome (`harmless`)."""
+    if status in GOOD:
+        return RIGHT if error <= limit else SILENT
+    if status in WHOLE:
+        small = wrong_from is None and error <= limit / 10
+        return FALSE if small and (status in FINISHED or status in harmless) else TOLD
+    return TOLD if wrong_from is not None else FALSE if status in harmless else STOPPED
+
+
+def judged(table):
+    return table[table.verdict.isin(ALL)]
+
+
+def counts(table):
+    return {verdict: int((table.verdict == verdict).sum()) for verdict in ALL}
+
+
+def kinds(table):
+    """A row a kind: mechanisms, runs and their verdicts."""
+    return [{"kind": kind, "mechanisms": rows.value.nunique(), "runs": len(rows)} | counts(rows) for kind, rows in judged(table).groupby("axis", sort=False)]
+
+
+def by_setting(table):
+    """{setting: (right runs, runs)} where more than the two forms was tried, of those who tried more; the best first."""
+    runs = judged(table)
+    more = runs[~runs.setting.isin([form.name for form in cells.FORMS])][["axis", "value", "implementation"]].drop_duplicates()
+    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows)) for name, rows in runs.merge(more).groupby("setting", sort=False)}
+    return dict(sorted(found.items(), key=lambda one: -one[1][0] / one[1][1]))
+
+
+def listed(table, verdict):
+    """Runs of a verdict, those that are equal but for setting and implementation in one entry, with the worst of them."""
+    return [{"kind": kind, "mechanism": mechanism, "step": step, "runs": len(rows), "settings": list(rows.setting.unique()),
+             "commands": list(rows.command.unique())} | rows.loc[
+                 rows.true_error.fillna(-1).idxmax(), ["true_error", "wrong_from", "status", "reason"]].to_dict()
+            for (kind, mechanism, step), rows in table[table.verdict == verdict].groupby(["axis", "value", "step"], sort=False)]

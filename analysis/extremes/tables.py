@@ -23,8 +23,7 @@ def _pivots(records):
     claims = gather((one["claim"], one["holds"]) for record in done for one in record.output.get("claims", []))
     lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
     found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
-    return {"pivots": pandas.DataFrame(found + lost),
-            "claims": pandas.DataFrame([{"claim": claim, "holds": all(holds), "record": names} for claim, holds in claims.items()])}
+    return {"pivots": found + lost, "claims": [{"claim": claim, "holds": all(holds), "record": names} for claim, holds in claims.items()]}
 
 
 def _over_processes(rows):

@@ -20,9 +20,9 @@ def draw(tables, view):
     return {"map": real_map(tables, Look(view.registry), view.registry), "held": held_figure(tables["held"])}
 
 
-def best_form(winners, layer):
-    """The rows of a layer in the paper's form of the step, or in the saddle-point form where that has no winner."""
-    rows = winners[(winners.layer == layer) & (winners.winner != "")]
+def best_form(winners):
+    """Winners among libraries in the paper's form of the step, or in the saddle-point form where that has none."""
+    rows = winners[(winners.layer == "libraries") & (winners.winner != "")]
     return rows.sort_values("scheme", kind="stable").drop_duplicates("scene")  # SCHEMES are in the order of the alphabet
 
 
@@ -31,7 +31,7 @@ def real_map(tables, look, registry):
     inside: not decided. Right: how many times faster the fastest code of our own is."""
     mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
-    rows = best_form(winners, "libraries")
+    rows = best_form(winners)
     if rows.empty or mechanisms[DECIDES].isna().all():
         return missing("nobody was timed", left, right)
     rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")

@@ -1,9 +1,17 @@
-# What page.html.j2 shows of families of mechanisms.
+# What page.html.j2 shows of families of mechanisms; the answer to "Which implementation is fastest on real mechanisms, at their own fill?".
+import pandas
+
 from analysis.core.text import number
+from analysis.families import by_hand
 from analysis.families.bounds import bounds
-from analysis.families.rule import missed, summary
-from analysis.families.sentences import meanings, where
+from analysis.families.figures import best_form, fastest_own
+from analysis.families.rule import document, missed, summary
 from analysis.families.times import features_of
+
+# Numbers of the rule by hand: letter, meaning.
+SIGNS = {"dense": ("p", "operations of a factorization, in % of a full L's"), "per_column": ("c", "non-zeros of L a column"),
+         "saddle_dense": ("p", "operations to factorize the saddle-point matrix, in % of a dense solver's"),
+         "saddle_per_column": ("c", "non-zeros of its L a column")}
 
 
 def context(tables, view):
@@ -35,3 +43,93 @@ def _formulas(steps):
     products = lambda rows: (" ".join([number(us), *features_of(term)[1:]]) for us, term in zip(rows.us, rows.term))  # without passes
     return [(scheme, name, f"passes × ({' + '.join(products(rows))})")
             for (scheme, name), rows in compared.groupby(["scheme", "implementation"], sort=False)]
+
+
+def answers(tables, view):
+    scenes, mine = tables["scenes"], best_form(tables["winners"])
+    if mine.empty:
+        return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
+    real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill
+    first = real.equivalent.str.split().explode().value_counts()  # of each library, the scenes on which it is in the equivalence set
+    shares = ", ".join(f"{name} on {count}" for name, count in sorted(first.items(), key=lambda one: (-one[1], one[0])))
+    found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
+              f"{number(real.variables.max(), 5)}), the fastest library, or as fast to 5 %, is {shares}. On {int(real.settled.astype(bool).sum())} of the "
+              f"{len(real)} this run decides who is fastest."}]
+    if len(tables["held"]):
+        held = summary(tables["held"])
+        found.append({"anchor": "rule", "text": f"The rule of mbs describe takes the least of at most three predicted times. On families that it was not fitted on, its choice takes "
+                      f"{100 * held['mean_loss']:.1f} % longer than the fastest library on average, {100 * held['worst_loss']:.0f} % at worst"
+                      f"{_unknown(held['unknown'], ' ({})')}; {100 * held['within']:.0f} % of "
+                      "the step times are within 1.5 times of the predicted."})
+    own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
+    for name, rows in own.groupby("implementation", sort=False):
+        ahead, behind = rows[rows.to_rival_high < 1], rows[rows.to_rival_low > 1]
+        found.append({"anchor": "map", "text": f"{name}, our own code, is shown to be faster than the fastest library on {len(ahead)} of "
+                      f"{len(rows)} mechanisms that it serves, slower on {len(behind)} (time over the library's: {number(rows.to_rival.min())} to "
+                      f"{number(rows.to_rival.max())})."})
+    return found + _defaults(tables["defaults"])
+
+
+def _unknown(count, form):
+    return form.format(f"{count} choices that have no time there are left out") if count else ""
+
+
+def _defaults(rows):
+    """What the defaults of other tools cost, the least and the largest mean."""
+    rows = rows[rows["mean"].notna()].sort_values("mean")
+    if rows.empty:
+        return []
+    told = lambda row: (f"“{row['rule']}” ({'at least ' if row['smaller'] > 0 else 'about ' if row['rough'] else ''}{number(row['mean'])} "
+                        f"times the fastest library's time on average, {number(row['worst'])} at worst)")
+    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} scenes, the least costly is "
+             f"{told(rows.iloc[0])}, the most costly {told(rows.iloc[-1])}."}]
+
+
+def cases(tables, view):
+    """Rows of the front page's table: the rule of `mbs describe`, that by hand, and what code without a library gains."""
+    found, held = [], tables["held"]
+    if len(held):
+        found.append({"case": "You have a scene file", "link": "families.html#rule",
+                      "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
+    for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
+        found.append({"case": f"By hand, {scheme} form", "link": "families.html#by-hand",
+                      "take": _taken(rows) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
+    if len(ahead := fastest_own(tables["scenes"], view.registry)):
+        names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items()) + f" of {len(ahead)} scenes"
+        found.append({"case": "You may take code that is no library", "link": "families.html#map",
+                      "take": f"fastest: {names}; {number(1 / ahead.to_rival.max())} to {number(1 / ahead.to_rival.min())} times as fast as the fastest "
+                              f"library, median {number(1 / ahead.to_rival.median())}"})
+    return found
+
+
+def where(row):
+    """The limits of a case of the rule by hand: "p < 26, c ≥ 8"."""
+    return ", ".join(f"{sign} {relation} {number(row[column])}" for name, (sign, _) in SIGNS.items()
+                     for end, relation in (("least", "≥"), ("below", "<")) if not pandas.isna(row[column := f"{end}_{name}"]))
+
+
+def meanings(rows):
+    """Of the letters in these cases: "p: ...; c: ..."."""
+    return "; ".join(f"{sign}: {meaning}" for name, (sign, meaning) in SIGNS.items() if rows[[f"least_{name}", f"below_{name}"]].notna().any(axis=None))
+
+
+def _taken(rows):
+    """The cases of a form in words: first those that differ from most."""
+    usual = rows.groupby("library").scenes.sum().idxmax()
+    others = rows[rows.library != usual]
+    if others.empty:
+        return usual
+    return "; ".join(f"{row['library']} if {where(row).replace(', ', ' and ')}" for row in others.to_dict("records")) + f"; else {usual} ({meanings(others)})"
+
+
+def _lost(found, count):
+    if pandas.isna(found["mean_loss"]):
+        return ""
+    return (f"; on families left out {100 * found['mean_loss']:.1f} % slower than the fastest library on average, {100 * found['worst_loss']:.0f} % "
+            f"at worst ({count} cases{_unknown(found['unknown'], '; {}')})")
+
+
+def files(tables, view):
+    """rule.json, which `mbs describe` applies: harness/src/describe/README.md."""
+    found = document(tables)
+    return {"rule.json": {key: view.context[name] for key, name in (("machine", "cpu_model"), ("commit", "commit"))} | found} if found else {}

@@ -2,8 +2,6 @@
 # elimination leaves to do.
 from collections import Counter
 
-import pandas
-
 from analysis.core import timing
 from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.controls import controls_in
@@ -30,17 +28,15 @@ def build(records, view):
                        | {"look_us": looks.get(name, {}).get("step_us")}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
-        for layer in layers:
-            timing.holm([row for row in winners if (row["scheme"], row["layer"]) == (scheme, layer)])
         twins += [{"scheme": scheme} | row for row in controls_in(by_role.get(scheme, []))]
+    timing.holm(winners, "scheme", "layer")
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]
-    tables = {name: conform(pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place)))), schema[name], f"families/{name}.csv")
+    tables = {name: conform(sorted(rows, key=lambda row: place.get(row["scene"], len(place))), schema[name], f"families/{name}.csv")
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
     return tables | judged(tables, registry) | {
-        "growth": pandas.DataFrame(growth(tables["scenes"], tables["mechanisms"])), "orderings": orderings(about),
-        "controls": pandas.DataFrame(twins)}
+        "growth": growth(tables["scenes"], tables["mechanisms"]), "orderings": orderings(about), "controls": twins}
 
 
 def family_of(scene):
@@ -80,8 +76,8 @@ def growth(scenes, mechanisms):
 
 def orderings(about):
     """A row for each scene and order of elimination, as `mbs describe` computes them."""
-    return pandas.DataFrame([
+    return [
         {"scene": scene, "n": record.output.get("variables"), "ordering": name, "factor": one["factor_nonzeros"],
          "per_column": one["per_column"], "flops": one["flops"], "height": one["height"], "record": record.name}
         for scene, record in about.items()
-        for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one])
+        for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one]

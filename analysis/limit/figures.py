@@ -85,8 +85,7 @@ def by_phase(rows, names, sizes):
     """A panel a size: the share of each phase in a step of each of `names`, beside the step in multiples of the limit code."""
     if not sizes:
         return nothing("no phases were timed")
-    figure, grid = panels(len(sizes), len(sizes), 3.9, 0.36 * len(names) + 0.6)
-    figure.suptitle("What a step consists of: libraries and code of our own", x=0.01, ha="left", fontsize=12)
+    figure, grid = panels(len(sizes), len(sizes), 3.9, 0.36 * len(names) + 0.6, "What a step consists of: libraries and code of our own")
     for axes, loops in zip(grid, sizes):
         of_size = rows[rows.loops == loops].set_index("implementation")
         for place, name in enumerate(names):

@@ -37,8 +37,8 @@ def build(records, view):
             if role in KINDS or set(registry.libraries) & set(cells):
                 found["leads"] += [known | one for one in _leads(timed, cells, registry)]
     known = of_part("limit")
-    tables = {name: conform(pandas.DataFrame(rows), known[name], f"limit/{name}.csv") for name, rows in found.items()}
-    return tables | {"held": pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])}
+    tables = {name: conform(rows, known[name], f"limit/{name}.csv") for name, rows in found.items()}
+    return tables | {"held": must_hold(registry.own, tables) if registry.own else ()}
 
 
 def _leads(timed, cells, registry):

@@ -42,8 +42,8 @@ def map_cells(results, names):
 
 def table(results):
     """Fills that were added where the winner changes are asked, too."""
-    return pandas.DataFrame([row for layer in layers(results.registry) for row in timing.holm(
-        [_row(results, cell, layer) for cell in map_cells(results, results.layer(layer))])])
+    return timing.holm([_row(results, cell, layer) for layer in layers(results.registry)
+                        for cell in map_cells(results, results.layer(layer))], "layer")
 
 
 def _row(results, cell, layer):

@@ -13,7 +13,7 @@ Versus = namedtuple("Versus", "value low high slow fast size fill record")
 
 
 def of(tables, view):
-    """The Results of these tables: figures, page and sentences share what has been computed."""
+    """The Results of these tables: figures and page share what has been computed."""
     if not _last or _last[0] is not tables["tidy"]:
         _last[:] = [tables["tidy"], Results(tables, view)]
     return _last[1]

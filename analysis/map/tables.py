@@ -25,9 +25,9 @@ def build(records, view):
     found = {name: conform(make(records), of_part("map")[name], f"map/{name}.csv")
              for name, make in (("tidy", tidy), ("scenes", scenes), ("verification", verification))}
     results = Results(found, view)
-    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)),
+    return found | {"cells": cells(results), "claims": claims(results),
                     "spread": carry.components(results.timing, with_samples(results.tidy[results.tidy.kind == "seeds"])),
-                    "controls": pandas.DataFrame(controls(results.timing[results.timing.process > AFTER]))}
+                    "controls": controls(results.timing[results.timing.process > AFTER])}
 
 
 def tidy(records):

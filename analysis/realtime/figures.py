@@ -22,7 +22,8 @@ def distributions(table, machine):
         return nothing("No run of which there are step times.")
     steps, loops, names = sorted(table.step.unique(), reverse=True), sorted(table.loops.unique()), order(table)
     asked = [(step, size) for step in steps for size in loops]
-    figure, grid = panels(len(asked), len(loops) if len(loops) > 1 else len(steps), 5.2, 0.27 * len(names) + 1.1)
+    figure, grid = panels(len(asked), len(loops) if len(loops) > 1 else len(steps), 5.2, 0.27 * len(names) + 1.1,
+                          "Times of steps, as observed in one run: libraries and code of our own", "time of a step, µs")
     for axes, (step, size) in zip(grid, asked):
         for scheme, rows in table[(table.step == step) & (table.loops == size)].groupby("scheme", sort=False):
             _form(axes, rows, names, scheme)
@@ -31,8 +32,6 @@ def distributions(table, machine):
             axes.axvline(gap, **GAP)
         axes.set(xscale="log", title=f"N = {size:g}, deadline {1e3 * step:g} ms")
         line_each(axes, names)
-    figure.supxlabel("time of a step, µs", fontsize=10)
-    figure.suptitle("Times of steps, as observed in one run: libraries and code of our own", x=0.01, ha="left", fontsize=12)
     others = sorted(set(table.status[table.median_us.notna()]) - {"ok"})
     below(figure, 4, left + [_entry(f"hollow: {', '.join(others)}", GREY, "o", markerfacecolor="white")] * bool(others))
     return figure
@@ -77,7 +76,8 @@ def sizes(table):
     steps = sorted(table.step.unique(), reverse=True)
     names = list(table.groupby("implementation").largest.max().sort_values(ascending=False, kind="stable").index)
     shown = [form for form in FORMS if form in set(table.scheme)]
-    figure, grid = panels(len(steps), len(steps), 6.6, (0.2 + 0.22 * len(shown)) * len(names) + 0.8)
+    figure, grid = panels(len(steps), len(steps), 6.6, (0.2 + 0.22 * len(shown)) * len(names) + 0.8,
+                          "Largest N in real time: libraries and code of our own", "N of the four-bar (n = 2N + 2 variables)")
     for axes, step in zip(grid, steps):
         for row in table[table.step == step].itertuples():
             _search(axes, row, names.index(row.implementation), len(shown) > 1)
@@ -86,8 +86,6 @@ def sizes(table):
     known = [size for size in (*table.largest.dropna(), *table.next.dropna()) if size > 0]
     grid[0].set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
     number_axis(grid[0].xaxis)
-    figure.supxlabel("N of the four-bar (n = 2N + 2 variables)", fontsize=10)
-    figure.suptitle("Largest N in real time: libraries and code of our own", x=0.01, ha="left", fontsize=12)
     below(figure, 4, [*(_entry(f"{form}: kept up with", *FORMS[form][:2]) for form in shown),
                       _entry("next size tried: not kept up with", GREY, "X"), _entry("right: N, steps missed (lost by the null process)"), *left])
     return figure

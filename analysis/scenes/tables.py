@@ -36,7 +36,7 @@ def build(records, view):
     order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
-    return {name: pandas.DataFrame(rows) for name, rows in found.items()}
+    return found
 
 
 def problem_rows(problem, runs):

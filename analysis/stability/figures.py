@@ -28,7 +28,8 @@ def draw(tables, view):
 def one_map(table, windows, scheme, precision):
     rows = table[(table.scheme == scheme) & (table.precision == precision)]
     sizes = sorted(rows.loops.unique())
-    figure, grid = panels(len(sizes), 3 if len(sizes) in (3, 5, 6, 9) else 4, 3.1, 3.5)
+    figure, grid = panels(len(sizes), 3 if len(sizes) in (3, 5, 6, 9) else 4, 3.1, 3.5,
+                          f"{scheme} form, {precision} precision: {rows.implementation.iloc[0]}", "step Δt, ms", "penalty factor α, kg/(m² s²)")
     for axes, loops in zip(grid, sizes):
         _panel(axes, rows[rows.loops == loops])
         _lines(axes, rows[rows.loops == loops], windows[(windows.loops == loops) & (windows.precision == precision)],
@@ -40,12 +41,9 @@ def one_map(table, windows, scheme, precision):
     for axes in grid[:len(sizes)]:
         axes.set(xlim=steps[[0, -1]], ylim=(4 * scaled[0] / steps[-1]**2, 4 * scaled[-1] / steps[0]**2))
         axes.set_xticks(ticks, [f"{1e3 * step:.3g}" for step in ticks])
-    figure.supxlabel("step Δt, ms", fontsize=10)
-    figure.supylabel("penalty factor α, kg/(m² s²)", fontsize=10)
     figure.colorbar(plt.cm.ScalarMappable(ERRORS, COLOURS), ax=grid, extend="min", fraction=0.03, pad=0.02, label="largest position error, m")
     used = set(rows[rows.penalty_asked != "auto"].status.map(category))
     below(figure, 4, [Patch(facecolor=colour, hatch=hatch, edgecolor=GREY, label=name) for name, (colour, hatch) in HATCHES.items() if name in used])
-    figure.suptitle(f"{scheme} form, {precision} precision: {rows.implementation.iloc[0]}", x=0.01, ha="left", fontsize=12)
     return figure
 
 

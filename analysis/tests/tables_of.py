@@ -6,4 +6,4 @@ def tables_of(part, build, view, *records):
     """As the schema has them. `records`: records and lists of them."""
     found, schema = build([one for group in records for one in (group if isinstance(group, list) else [group])], view), of_part(part)
     assert set(found) == set(schema)
-    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+    return {name: conform(rows, schema[name], name) for name, rows in found.items()}

@@ -8,7 +8,7 @@ import numpy
 import pandas
 import pytest
 
-from analysis.accuracy import figures, page, pairs, points, sentences, tables, winners
+from analysis.accuracy import figures, page, pairs, points, tables, winners
 from analysis.core import schema
 from analysis.core.records import Record
 from analysis.core.style import Look
@@ -181,13 +181,13 @@ def test_mixed_precision_says_whether_it_gains(found):
                 "low": 0.95 * ratio, "high": 1.05 * ratio, "variables": 22, "first_class": classes[0], "second_class": classes[1],
                 "first_status": "ok", "second_status": "ok" if classes[1] else "dropped"}
     table = pandas.DataFrame([row("one/a", 0.5), row("two/a", 0.5, (1e-3, 1e-2)), row("three/a", 0.82), row("one/a", 0.5, (None, None), "single")])
-    mixed, single = sentences.of_precision(table)
+    mixed, single = page.of_precision(table)
     assert "of 3 pairs with double 2 are in the same error class, 1 in another; of 0 it is not known" in mixed
     assert "At least 1.2 times faster in 1 of 2 of the same class" in mixed and "one/a, mixed, n = 22" in mixed
     assert single.startswith("Single precision: of 1 pairs with double 0 are in the same error class, 0 in another; of 1 it is not known. None of")
-    [nowhere] = sentences.of_precision(table.iloc[1:3])
+    [nowhere] = page.of_precision(table.iloc[1:3])
     assert "At least 1.2 times faster in 0 of 1" in nowhere and "three/a" in nowhere
-    [alone] = sentences.of_precision(table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf))  # the faster one is not the first
+    [alone] = page.of_precision(table.iloc[[2, 0]].assign(low=0.0, high=numpy.inf))  # the faster one is not the first
     assert "All were timed in one process only, so nothing is shown; the best speed-up is about 2 (not bounded) of one/a" in alone
 
 
@@ -229,8 +229,8 @@ def test_a_subject_that_nobody_finishes_and_cells_of_nobody_can_be_drawn():
     made = {name: schema.conform(made[name], known, name) for name, known in columns.items()}
     for figure in figures.draw(made, view(lab)).values():
         plt.close(figure)
-    assert sentences.answers(made, view(lab)) == [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
-    [case] = sentences.cases(made, view(lab))
+    assert page.answers(made, view(lab)) == [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
+    [case] = page.cases(made, view(lab))
     assert case["take"] == "what `study/advise` names for your scene" and "nobody" in render(made, view(lab))
 
 
@@ -239,24 +239,24 @@ def test_nothing_measured_is_a_page_too():
     lab = Lab("four-bar-10")
     made = {name: schema.conform(pandas.DataFrame(columns=list(columns[name])), columns[name], name) for name in columns}
     assert tables.build([], view(lab)).keys() == columns.keys()
-    assert figures.draw(made, view(lab)) == {} and len(sentences.answers(made, view(lab))) == 1
+    assert figures.draw(made, view(lab)) == {} and len(page.answers(made, view(lab))) == 1
     render(made, view(lab))
 
 
 def test_the_answers_name_both_layers_and_what_reuse_saves(found):
     made, seen = found
-    said = [one["text"] for one in sentences.answers(made, seen)]
+    said = [one["text"] for one in page.answers(made, seen)]
     assert said[0].startswith("Of the libraries lib_a/fast is fastest for 2 of 2 required errors")
     assert said[1].startswith("Of all, code without a library included, own/code is fastest")
     assert any("in steps of 1.25 ms: where factorizations are known, every-step saves the most of them, 50 %" in one for one in said)
     lost = made["pairs"].assign(second_factorizations=numpy.where(made["pairs"].variables > 50, numpy.nan, made["pairs"].second_factorizations),
                                 ratio=numpy.where(made["pairs"].variables > 50, 0.5, 1.1))
-    [text] = sentences.of_reuse(lost)
+    [text] = page.of_reuse(lost)
     assert re.search(r"n = 82 is the quickest: in the median over \d implementations its step takes 0.5 times that of default", text)
     assert "<td class=\"n\">–</td>" in render(made | {"pairs": lost}, seen)
-    [case] = sentences.cases(made, seen)
+    [case] = page.cases(made, seen)
     assert "an error of 0.001 m: lib_a/fast, `--scheme rattle`, step 20 ms; " in case["take"]
-    assert {one["anchor"] for one in sentences.answers(made, seen)} <= set(re.findall('id="([^"]+)"', render(made, seen)))
+    assert {one["anchor"] for one in page.answers(made, seen)} <= set(re.findall('id="([^"]+)"', render(made, seen)))
 
 
 def test_the_page_shows_what_was_left_out_and_explains_every_setting(found):

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.engines import andrews, equal_error, figures, page, sentences, tables
+from analysis.engines import andrews, equal_error, figures, page, tables
 from analysis.engines.runs import row
 from analysis.engines.subjects import FLOOR, PENDULUM_S, positions, subject_of
 from analysis.tests.tables_of import tables_of
@@ -110,7 +110,7 @@ def test_the_build_with_our_flags_is_an_engine_of_its_own_and_compared_with_the_
     [row] = found["native"].to_dict("records")
     assert row["ratio"] == pytest.approx(2.0) and row["engine"] == "ode" and row["native_time"] == pytest.approx(1.05)
     assert one(found, "ode+native", 1e-1, "chains")["ratio"] == pytest.approx(5.0)
-    assert "2 times as long" in sentences.of_native(found["native"])
+    assert "2 times as long" in page.of_native(found["native"])
 
 
 def test_candidates_are_the_fastest_of_each_side():
@@ -136,12 +136,12 @@ def test_figures_page_and_answers(found):
         ("paper", "ode+native", 0.167), ("library", "ode+native", 0.25)]
     assert ("chains", LONG, "not reached: its smallest error is 0.0001 m", [4e-6]) in known["unreached"]
     assert any("Simbody: left out, libsimbody-dev is not installed" in text for text in known["says"])
-    texts = [one["text"] for one in sentences.answers(found, VIEW)]
+    texts = [one["text"] for one in page.answers(found, VIEW)]
     assert texts[0].startswith("Our code for chains: timed at 4 of 5 errors that engines reach, shown to be faster in 4 of these; ")
     assert texts[0].endswith("; 1 of 5 errors not reached.") and "Open Dynamics Engine alone" in texts[-1]
     assert "1 of its 1 curves were cut" in next(text for text in known["says"] if text.startswith("DART"))
     single = found["equal_error"].assign(low=0.0, high=numpy.inf)
-    assert "shown to be faster in 0 of these (4 have a single round" in sentences.of_side(single, "chains")
+    assert "shown to be faster in 0 of these (4 have a single round" in page.of_side(single, "chains")
 
 
 def test_a_sentence_on_andrews_mechanism():
@@ -150,7 +150,7 @@ def test_a_sentence_on_andrews_mechanism():
             (mine, ("lib/a", 1e-4, 2.0, 1e-4), {"subject": "andrews"}), (mine, (equal_error.FRONTS, 1e-4, 1.0, 1e-7), {"subject": "andrews"})]
     motion = numpy.moveaxis(andrews.positions(numpy.array([0.0, 0.03])), 2, 0)  # time, point, axis
     table = made(*(record for make, arguments, more in runs for record in [known(make(*arguments, **more), motion)]), *rounds(runs))
-    [text] = sentences.of_andrews(table["equal_error"])
+    [text] = page.of_andrews(table["equal_error"])
     assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.0005 to 10⁻⁶ m, takes 4 to 9 times as long as our "
                     "general code; 2 times as long as the fastest library (1 of 2 errors not reached).")
 
@@ -167,7 +167,7 @@ def known(record, motion):
 
 def test_without_engines_the_page_says_what_is_missing():
     found = made(ABSENT)
-    assert [one["text"] for one in sentences.answers(found, VIEW)] == ["Not measured: libsimbody-dev is not installed (study/setup --engines)."]
+    assert [one["text"] for one in page.answers(found, VIEW)] == ["Not measured: libsimbody-dev is not installed (study/setup --engines)."]
     known = page.context(found, VIEW)
     assert not known["measured"] and known["setting_up"] == "study/setup --engines"
     assert set(figures.draw(found, VIEW)) == {"singular", "regular"}

@@ -10,7 +10,7 @@ from analysis.core import site
 from analysis.core.files import ROOT, StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.extremes import battery, cells, judge, page, sentences, tables, trials, verdicts
+from analysis.extremes import battery, cells, judge, page, tables, trials
 from analysis.extremes.motions import Chain, Flat
 from analysis.tests.tables_of import tables_of
 
@@ -48,7 +48,7 @@ def test_what_is_ok_beyond_its_class_is_silently_wrong():
                  run("ok", float("nan"), role="saddle-point"), run("plausible", 1e-3, "b/v", "saddle-point", position_error_max=0.02),
                  record("battery/dropped", {"scene": CELL.name, "role": "rattle6"}, ended="dropped", reason="budget"))["battery"]
     found = {(row.implementation, row.setting): row for row in table.itertuples()}
-    assert [key for key, row in found.items() if row.verdict == verdicts.SILENT] == [("b/v", "penalty"), ("a/v", "saddle-point"), ("b/v", "saddle-point")]
+    assert [key for key, row in found.items() if row.verdict == battery.SILENT] == [("b/v", "penalty"), ("a/v", "saddle-point"), ("b/v", "saddle-point")]
     assert found["b/v", "penalty"].true_error == pytest.approx(0.02 * 2**0.5)
     assert found["b/v", "penalty"].command == "build/mbs simulate 'a scene.json'" and found["a/v", "penalty"].command == ""
     assert found["b/v", "saddle-point"].true_error == 0.02  # what it reports itself, between two instants
@@ -86,11 +86,11 @@ def test_trials_that_did_not_run_or_cannot_be_judged_have_no_verdict():
 
 def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
     found = made(trial("plausible"), trial("plausible", 0.5), trial("ok", 0.6), trial("degraded"), trial("ok", of=STANDARD))["battery"]
-    counts = verdicts.kinds(found)
+    counts = battery.kinds(found)
     assert [(row["kind"], row["mechanisms"], row["runs"]) for row in counts] == [(STANDARD.axis, 1, 1), ("driven four-bar", 1, 4)]
-    [wrong] = verdicts.listed(found, verdicts.SILENT)
+    [wrong] = battery.listed(found, battery.SILENT)
     assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
-    [text] = [one["text"] for one in sentences._battery(found)]
+    [text] = [one["text"] for one in page._of_battery(found)]
     assert "In 5 runs of 2 mechanisms of 2 kinds: 2 silent wrongs and 1 false alarm." in text
     assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
@@ -142,7 +142,7 @@ def small():
     return pandas.DataFrame([
         {"axis": axis, "value": status, "implementation": name, "setting": setting, "status": status, "reason": "why",
          "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact",
-         "verdict": {"ok": verdicts.RIGHT, "degraded": verdicts.FALSE}.get(status, ""), "near": float("nan"), "wrong_from": float("nan"), "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3, "command": "",
+         "verdict": {"ok": battery.RIGHT, "degraded": battery.FALSE}.get(status, ""), "near": float("nan"), "wrong_from": float("nan"), "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3, "command": "",
          "record": f"{axis} {status} {name} {setting}"}
         for axis in ("loops", "step") for status in STATUSES for setting in ("penalty", "saddle-point") for name in ("a/v", "b/v")])
 
@@ -152,7 +152,7 @@ def test_the_matrix_shows_the_worst_and_who_is_unlike():
     found = page.matrix(table)
     assert len(found) == 16 and ("loops", "dropped") not in found and found["loops", "ok"]["penalty"] == ("ok", -5, False)
     assert {cells["penalty"][0] for cells in found.values()} == {"ok", *STATUSES[1:8]}
-    table.loc[table.index[0], ["verdict", "true_error"]] = verdicts.SILENT, 0.3
+    table.loc[table.index[0], ["verdict", "true_error"]] = battery.SILENT, 0.3
     table.loc[table.index[9], "status"] = "strange"
     found = page.matrix(table)
     assert found["loops", "ok"]["penalty"] == ("silent", -1, True) and "other" in {kind for cells in found.values() for kind, _, _ in cells.values()}
@@ -164,7 +164,7 @@ def test_settings_that_are_equal_in_all_cells_share_a_column():
     table = small()
     more = table[(table.setting == "penalty") & (table.axis == "loops")].assign(setting="rattle")  # not tried elsewhere
     assert page._battery(pandas.concat([table, more]))["columns"] == [["penalty", "saddle-point"], ["rattle"]]
-    table.loc[table.index[0], ["verdict", "true_error"]] = verdicts.SILENT, 0.3
+    table.loc[table.index[0], ["verdict", "true_error"]] = battery.SILENT, 0.3
     assert page._battery(table)["columns"] == [["penalty"], ["saddle-point"]]
     found = made(run("ok"), run("ok", role="saddle-point"), run("ok", 0.02, role="rattle4"))
     assert "<span>penalty<br>saddle-point</span></th><th><span>rattle4</span>" in render(found)
@@ -184,18 +184,18 @@ def test_cells_in_which_nobody_is_right_are_found():
     table = small()
     found = page._battery(table)
     assert (found["runs"], len(found["nobody"])) == (16, 14)
-    table.loc[(table.value == "diverged") & (table.implementation == "a/v"), ["status", "verdict"]] = "ok", verdicts.RIGHT
+    table.loc[(table.value == "diverged") & (table.implementation == "a/v"), ["status", "verdict"]] = "ok", battery.RIGHT
     found = page._battery(table)
     assert len(found["nobody"]) == 12
-    assert found["settings"][0] == ("penalty", 10, verdicts.counts(table[table.setting == "penalty"]))
+    assert found["settings"][0] == ("penalty", 10, battery.counts(table[table.setting == "penalty"]))
 
 
 def test_settings_are_compared_where_all_were_tried():
     found = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))["battery"]
-    assert verdicts.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
-    [answer] = sentences._helps(found)
+    assert battery.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
+    [answer] = page._helps(found)
     assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in answer["text"]
-    assert list(sentences._helps(found[found.setting != "rattle4"])) == []
+    assert list(page._helps(found[found.setting != "rattle4"])) == []
 
 
 def stale(number, times):
@@ -235,15 +235,15 @@ def test_page_and_answers_of_all_columns():
     assert 'class="matrix"' in text
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "holds" in text and "Not measured" not in text
-    said = [one["text"] for one in sentences.answers(found, VIEW)]
+    said = [one["text"] for one in page.answers(found, VIEW)]
     assert said[0].startswith("In 5 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
     assert any("right most often" in text for text in said) and any("takes 1.2 times as long" in text for text in said)
-    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
-    assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
+    assert {one["anchor"] for one in page.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
+    assert all(f'id="{one["anchor"]}"' in text for one in page.answers(found, VIEW))
 
 
 def test_a_page_of_nothing_says_so():
     found = made()
     text = render(found)
     assert text.count("Not measured") == 2
-    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""]
+    assert [one["anchor"] for one in page.answers(found, VIEW)] == [""]

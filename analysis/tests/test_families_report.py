@@ -11,7 +11,7 @@ import yaml
 
 from analysis.core import controls, site
 from analysis.core.files import ROOT
-from analysis.families import bounds, by_hand, defaults, figures, page, rule, sentences, tables, times
+from analysis.families import bounds, by_hand, defaults, figures, page, rule, tables, times
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
 from analysis.tests.tables_of import tables_of
 
@@ -80,12 +80,12 @@ def test_figure_page_and_sentences_of_a_small_set_and_of_none():
         for figure in figures.draw(found, VIEW).values():
             plt.close(figure)
         page.context(found, VIEW)
-        assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
-    texts = [one["text"] for one in sentences.answers(small(), VIEW)]
+        assert all(one["text"].endswith(".") for one in page.answers(found, VIEW))
+    texts = [one["text"] for one in page.answers(small(), VIEW)]
     assert "one/a on 2, one/b on 1" in texts[0] and "faster than the fastest library on 1 of 1" in texts[1]
-    [case] = sentences.cases(small(), VIEW)  # too few mechanisms for a rule
+    [case] = page.cases(small(), VIEW)  # too few mechanisms for a rule
     assert case["take"] == "fastest: own/x on 1 of 1 scenes; 2 to 2 times as fast as the fastest library, median 2"
-    assert sentences.cases(made(), VIEW) == []
+    assert page.cases(made(), VIEW) == []
 
 
 def test_a_scene_where_nobody_agrees_has_its_reason():
@@ -102,7 +102,7 @@ def test_controls_have_rows_and_their_twins_no_place():
 
 
 @pytest.mark.parametrize("path, said", [
-    ("analysis/map", "by Holm"), ("analysis/families", "(Holm)"), ("analysis/accuracy", "uncorrected for their number"), ("study/tools/merge", "by Holm")])
+    ("analysis/map", "by Holm"), ("analysis/families", "(Holm's procedure)"), ("analysis/accuracy", "uncorrected for their number"), ("study/tools/merge", "by Holm")])
 def test_pages_say_whether_their_intervals_are_corrected_for_their_number(path, said):
     assert said in (ROOT / path / "page.html.j2").read_text(encoding="utf-8")
 
@@ -197,7 +197,7 @@ def test_dense_ones_factorize_in_the_saddle_point_form_as_in_the_penalty_form():
 
 def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
-    described, parted, own = sentences.cases(tables, VIEW)
+    described, parted, own = page.cases(tables, VIEW)
     assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
         "one/b if c ≥ 10; else one/a (c: non-zeros of L a column); on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
@@ -210,9 +210,9 @@ def test_cases_by_hand_are_told_by_letters():
             case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
     below = "one/b if p < 26 and c ≥ 20; one/c if p ≥ 26"
     meant = " (p: operations of a factorization, in % of a full L's; c: non-zeros of L a column)"
-    assert sentences._taken(pandas.DataFrame(rows)) == below + " and c ≥ 8; else one/a" + meant
-    assert sentences._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "; else one/a" + meant
-    assert sentences._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"
+    assert page._taken(pandas.DataFrame(rows)) == below + " and c ≥ 8; else one/a" + meant
+    assert page._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "; else one/a" + meant
+    assert page._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"
 
 
 def test_cases_by_hand_part_where_the_fastest_changes():
@@ -357,8 +357,8 @@ def test_what_a_smaller_machine_tells_of_a_default_is_said_to_be_at_least_so_muc
     row, by_size = followed(rows, lambda n, fill: "slow", lambda n, fill: "fast" if n == 40 else "slow")
     assert (row["timed"], row["rough"], row["smaller"], row["mean"], row["record"]) == (2, 2, 1, pytest.approx(6), "b/slow")
     assert (by_size["rough"], by_size["smaller"], by_size["worst"], by_size["mean"]) == (1, 0, 4.0, pytest.approx(2))
-    [said] = sentences._defaults(pandas.DataFrame([row]))
-    assert "“R” (at least " in said["text"] and "“R” (about " in sentences._defaults(pandas.DataFrame([by_size]))[0]["text"]
+    [said] = page._defaults(pandas.DataFrame([row]))
+    assert "“R” (at least " in said["text"] and "“R” (about " in page._defaults(pandas.DataFrame([by_size]))[0]["text"]
 
 
 def test_a_default_without_any_time_has_no_loss():

@@ -10,7 +10,7 @@ from matplotlib.colors import to_rgb
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.limit import figures, held, page, sentences, tables
+from analysis.limit import figures, held, page, tables
 from analysis.core.timing import PHASES
 from analysis.limit.tables import LIMIT
 from analysis.tests.tables_of import tables_of
@@ -216,7 +216,7 @@ def test_sweeps_are_projected_from_the_lanes_that_were_run():
     assert list(rows.lanes_per_s) == [500, 1000] and list(rows.gain) == pytest.approx([1, 2]) and list(rows.work) == [1, 2]
     assert rows.million_s[2] == pytest.approx(1000 + 100) and rows.nodes_s[2] == pytest.approx(10 + 100)
     assert (rows.least[1], rows.most[1], rows.lane_us[1]) == (250, 500, 2000)
-    assert any("2 times as many lanes a second as by one job" in one["text"] for one in sentences.answers(found, VIEW))
+    assert any("2 times as many lanes a second as by one job" in one["text"] for one in page.answers(found, VIEW))
     assert made(swept(1, 1.0, 1.0, "dropped"))["sweeps"].reason.tolist() == ["why"]
 
 
@@ -278,10 +278,10 @@ def test_figures_sentences_and_page_of_a_small_set_and_of_none():
             assert figure.get_size_inches()[1] < 12
             plt.close(figure)
         page.context(found, VIEW)
-        assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
-    texts = [one["text"] for one in sentences.answers(small, VIEW)]
+        assert all(one["text"].endswith(".") for one in page.answers(found, VIEW))
+    texts = [one["text"] for one in page.answers(small, VIEW)]
     assert "the fastest library takes 5 times as long (n = 22 to 20000)" in texts[0] and "own/x is shown to be faster" in texts[1]
-    assert sentences.answers(made(), VIEW)[0]["text"].startswith("Not measured")
+    assert page.answers(made(), VIEW)[0]["text"].startswith("Not measured")
     assert [key for key, _ in page.context(small, VIEW)["sizes"]] == [22, 82, 20000]
 
 

@@ -11,7 +11,7 @@ from analysis.core.files import ROOT, write_json
 from analysis.core.records import Record
 from analysis.core.style import DENSE, SPARSE, Look
 from analysis.core.timing import differing
-from analysis.map import figures, page, sentences, summary, tables
+from analysis.map import figures, page, summary, tables
 from analysis.map.cells import map_cells, table
 from analysis.map.figures import bounds, broken, shorter
 from analysis.map.timed import AFTER, Scene, timed_rows
@@ -74,7 +74,7 @@ def test_a_cell_is_decided_equal_or_open():
 
 def test_a_cell_keeps_the_interval_within_its_build_beside_that_of_a_new_one():
     rows = [row | {"layout": f"layouts/mbs-{row['process'] % 2}"} for row in cell(A, 10, 2.0, 2.2, 2.01, 2.21) + cell(B, 10, 1.0, 1.0, 1.0, 1.0)]
-    found = table(some(rows)).iloc[0]
+    found = pandas.DataFrame(table(some(rows))).iloc[0]
     assert found.low < found.within_low < found.margin < found.within_high < found.high
 
 
@@ -85,7 +85,7 @@ def test_left_alone_one_wins_over_the_excluded_but_not_over_the_failed():
 
 
 def test_libraries_and_all_are_two_layers():
-    rows = table(some(cell(A, 10, 2.0, 2.0) + cell(OWN, 10, 1.0, 1.0) + failed(B, 10, "excluded")))
+    rows = pandas.DataFrame(table(some(cell(A, 10, 2.0, 2.0) + cell(OWN, 10, 1.0, 1.0) + failed(B, 10, "excluded"))))
     assert dict(zip(rows.layer, rows.winner)) == {"libraries": A, "all": OWN}
     assert set(rows.excluded) == {B} and set(rows.second.fillna("")) == {"", A}
 
@@ -124,14 +124,14 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
     for size, first in ((10, 2.0), (22, 3.0), (50, 0.5)):
         rows += cell(A, size, first, first, first) + cell(B, size, 1.0, 1.0, 1.0)
     groups = summary.by_size(some(rows), [A, B])
-    assert list(sentences.by_outcome(groups)) == [
+    assert list(page.by_outcome(groups)) == [
         f"{B} is the fastest library at n = 10 to 22, 2.00 to 3.00 times ahead of the second.",
         f"{A} is the fastest library at n = 50, 2.00 times ahead of the second."]
 
 
 def test_sizes_that_tell_nothing_are_named():
     groups = summary.by_size(some(cell(A, 10, 2.0) + cell(B, 10, 1.0) + failed(A, 22, "dropped") + failed(B, 22, "dropped")), [A, B])
-    assert list(sentences.by_outcome(groups)) == ["At n = 10 too few processes were timed to tell.", "At n = 22 nobody was timed."]
+    assert list(page.by_outcome(groups)) == ["At n = 10 too few processes were timed to tell.", "At n = 22 nobody was timed."]
 
 
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
@@ -216,7 +216,7 @@ def test_records_become_tables_and_a_page(tmp_path):
 def test_without_times_the_answer_says_so():
     found = some([])
     empty = {"tidy": found.tidy, "claims": pandas.DataFrame({"verdict": []})}
-    [answer] = sentences.answers(empty, found.view)
+    [answer] = page.answers(empty, found.view)
     assert "Nothing was timed" in answer["text"]
 
 

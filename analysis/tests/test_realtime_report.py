@@ -7,7 +7,7 @@ import pytest
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.realtime import figures, page, sentences, tables
+from analysis.realtime import figures, page, tables
 from analysis.realtime.tables import judge, needs_null
 from analysis.tests.tables_of import tables_of
 
@@ -96,7 +96,7 @@ def test_figures_page_and_answers():
         plt.close(figure)
     known = page.context(found, VIEW)
     assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"] == []
-    texts = [one["text"] for one in sentences.answers(found, VIEW)]
+    texts = [one["text"] for one in page.answers(found, VIEW)]
     assert texts[0] == ("Steps of 1 ms: Of the libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
                         "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
                         "Of our own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
@@ -125,14 +125,14 @@ def test_judging_is_held_to_its_bound_beside_the_fastest():
     assert (small["implementation"], small["share"], small["bound"], small["held"]) == ("own/a", pytest.approx(0.03), 0.04, True)
     assert (large["share"], large["bound"], large["held"]) == (pytest.approx(0.03), 0.02, False)
     assert lost["share"] != lost["share"] and lost["status"] == "diverged"
-    [answer] = sentences.answers(found, VIEW)
+    [answer] = page.answers(found, VIEW)
     assert "not held on large." in answer["text"] and answer["anchor"] == "judging"
-    assert ": held." in sentences.answers(made(*runs[:4]), VIEW)[0]["text"]
+    assert ": held." in page.answers(made(*runs[:4]), VIEW)[0]["text"]
 
 
 def test_without_records_all_says_so():
     found = made()
-    assert sentences.answers(found, VIEW)[0]["text"].startswith("Not measured")
+    assert page.answers(found, VIEW)[0]["text"].startswith("Not measured")
     assert all(len(figures.draw(found, VIEW)[name].axes) == 1 for name in ("steps", "largest"))
     plt.close("all")
     assert page.context(found, VIEW)["judging"] == []

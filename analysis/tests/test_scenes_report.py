@@ -8,7 +8,7 @@ import pytest
 from analysis.core.files import StudyError
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from analysis.scenes import page, sentences, tables
+from analysis.scenes import page, tables
 from analysis.tests.tables_of import tables_of
 from study.scenes import problems, references
 
@@ -94,7 +94,7 @@ def test_verdicts_stay_with_the_reason_and_the_sentence_counts_who_serves():
                  verdict("A03", "one/a", "", ended="crashed"))
     assert list(found["gate"].verdict) == ["agrees", "disagrees", "unsupported", "crashed"]
     assert found["gate"].reason.iloc[3] == "the check: it died"
-    [said] = sentences.answers(found, VIEW)
+    [said] = page.answers(found, VIEW)
     assert said["text"].startswith("The gate: 1 of 3 pairs")
     [(_, good, of, others), _] = page.gate(found["gate"])
     assert (good, of) == (1, 3) and others[0] == ("disagrees", "why", ["two/b"])
@@ -132,7 +132,7 @@ def test_sentences_and_page_of_a_small_set_and_of_none():
                 for record in modelled(case, number, 1.0, 2.0)]
     for found in (made(*records), made()):
         known = page.context(found, VIEW)
-        said = sentences.answers(found, VIEW)
+        said = page.answers(found, VIEW)
         assert all(one["text"].endswith(".") for one in said)
         assert bool(known["finest"]) == ("Not measured" not in said[0]["text"])
     assert [title for title, _, _ in page.everyone(made(*records)["problems"])] == ["Simple pendulum", "Double four-bar"]

@@ -6,7 +6,7 @@ import pytest
 
 from analysis.core.records import Record
 from analysis.core.schema import conform, of_part
-from analysis.stability import figures, page, sentences, tables
+from analysis.stability import figures, page, tables
 
 STATUSES = ("diverged", "ok", "ok", "degraded", "wrong-branch", "not-converged", "timeout", "crashed")
 VIEW = SimpleNamespace(settings={"duration": 2.0})
@@ -110,7 +110,7 @@ def test_what_whole_runs_must_hold(change, verdict):
 
 def test_answers_count_what_is_ok_and_what_holds():
     found = made([*maps(automatic="ok"), record("whole", "ok"), record("whole", "degraded", loops=10)])
-    texts = [one["text"] for one in sentences.answers(found, VIEW)]
+    texts = [one["text"] for one in page.answers(found, VIEW)]
     assert texts == ["Penalty form: the automatic factor is ok in 1 of 1 cells of size and step, with steps up to 1 ms, over 2 s.",
                      "Whole runs with everything automatic: 1 of 2 keep what their form must hold, up to N = 2."]
-    assert "Not measured" in sentences.answers(made([]), VIEW)[0]["text"]
+    assert "Not measured" in page.answers(made([]), VIEW)[0]["text"]

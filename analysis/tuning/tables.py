@@ -1,6 +1,4 @@
 # Rows of what was tried, by variant and scene.
-import pandas
-
 from analysis.core import timing
 from analysis.core.contest import cells_of, verdicts_of
 from analysis.core.controls import controls
@@ -18,7 +16,7 @@ def build(records, view):
             known = {"scene": scene, "base": one["tried_for"], "alternative": name, "description": one["description"]}
             row = _row(here, cells, name, one["tried_for"]) or _unasked(gate, scene, name)
             found += [known | row] if row else []
-    return {"alternatives": pandas.DataFrame(found), "controls": pandas.DataFrame(controls(rows))}
+    return {"alternatives": found, "controls": controls(rows)}
 
 
 def _row(rows, cells, name, base):

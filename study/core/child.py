@@ -1,6 +1,5 @@
 # Runs one `mbs` as a child with a hard time limit and a memory limit, and says how it ended; or what has children of its own.
 import contextlib
-import ctypes
 import errno
 import os
 import re
@@ -74,20 +73,18 @@ def _ends(child, seconds):
         os.close(handle)
 
 
-def die_with(parent):
-    """In a child that process `parent` has just started: it is killed when that ends."""
-    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-    if os.getppid() != parent:  # which has ended meanwhile
-        os._exit(1)
+def tied(script, *words, end="KILL"):
+    """The words that start a shell script on `words`, which gets the signal `end` when this process ends, however that ends. By programs of the
+    system: what Python runs between fork and exec makes it copy the tables of its memory, 8 ms with pandas loaded."""
+    return ["setpriv", "--pdeathsig", end, "/bin/sh", "-c", f'[ "$PPID" = "$1" ] || exit; shift; {script}', "sh", str(os.getpid()), *words]
 
 
 @contextlib.contextmanager
 def with_all(command):
     """A Popen of `command` in ROOT, for its output. It and all that it started are told to end when the block is left, or when
     this process ends, however that ends: told, not killed, as compilers have process groups that only their ninja knows."""
-    script = """[ "$PPID" = "$1" ] || exit; shift; trap 'trap "" TERM; kill 0; wait' TERM; "$@" & wait $!"""
-    process = subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "/bin/bash", "-c", script, "bash", str(os.getpid()), *command], cwd=ROOT,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
+    words = tied("""trap 'trap "" TERM; kill 0; wait' TERM; "$@" & wait $!""", *command, end="TERM")
+    process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
     with process:  # closes its output and waits for its end
         try:
             yield process
@@ -96,13 +93,11 @@ def with_all(command):
 
 
 def _limited(command, memory_mb):
-    """The words that start `command` so that it never outlives this process, nor passes its limits. By programs of the
-    system: what Python runs between fork and exec makes it copy the tables of its memory, 8 ms with pandas loaded."""
+    """The words that start `command` so that it never outlives this process, nor passes its limits."""
     if not (ROOT / command[0]).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), command[0])
-    script = '[ "$PPID" = "$1" ] || exit; ulimit -c 0; ulimit -f "$2"; ulimit -v "$3"; shift 3; exec "$@"'
-    return ["setpriv", "--pdeathsig", "KILL", "/bin/sh", "-c", script, "sh", str(os.getpid()),
-            str(OUTPUT_LIMIT // 512), str(memory_mb * 1024) if memory_mb else "unlimited", *command]
+    return tied('ulimit -c 0; ulimit -f "$1"; ulimit -v "$2"; shift 2; exec "$@"', str(OUTPUT_LIMIT // 512),
+                str(memory_mb * 1024) if memory_mb else "unlimited", *command)
 
 
 def _text(file, tail=None):

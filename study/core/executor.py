@@ -9,7 +9,7 @@ from pathlib import Path
 
 from analysis.core.files import StudyError
 from analysis.core.gather import gather
-from study.core import child, machine
+from study.core import child
 from study.core.cell import LAYOUT
 
 USAGE = 2  # the exit status of a program that refuses what it is asked for
@@ -49,11 +49,11 @@ def run(cell, context, scratch=None):
     `scratch`: the folder for what the program writes."""
     with tempfile.TemporaryDirectory(dir=scratch) as folder:
         output, motion = Path(folder) / "output.json", Path(folder) / "motion.csv"
-        before = machine.ticks()
+        before = _ticks()
         ended = child.run(command_of(cell, str(output), str(motion)), cell.seconds, cell.memory_mb, cell.timed)
         record = {"cell": cell.document(), "command": command_of(cell), "seconds": round(ended.seconds, 6),
                   "context": context or {}, "status": "done", "reason": "", "output": {}, "series": {},
-                  "machine": machine.since(before) | {"cpu_s": round(ended.cpu_s, 6)} if cell.timed else {}}
+                  "machine": _since(before) | {"cpu_s": round(ended.cpu_s, 6)} if cell.timed else {}}
         if ended.status != "exited" or ended.code not in (0, 1):
             return record | _failure(ended)
         try:
@@ -107,6 +107,19 @@ def need_same(known, found, what):
                          "results are never merged; name another directory with --results")
 
 
+def _ticks():
+    """(those that the host took, all) of this machine's processors since it was started."""
+    found = [int(one) for one in Path("/proc/stat").read_text().split()[1:9]]  # user, …, steal
+    return found[-1], sum(found)
+
+
+def _since(before):
+    """{"steal", "mhz"}: the share that the host took since `_ticks` were `before`; the processor's frequency now, None where it cannot be read."""
+    taken, total = (now - then for now, then in zip(_ticks(), before))
+    found = re.findall(r"^cpu MHz\s*: ([\d.]+)", Path("/proc/cpuinfo").read_text(), re.M)
+    return {"steal": taken / total if total else 0.0, "mhz": max(map(float, found), default=None)}
+
+
 def _failure(ended):
     if ended.status == "exited":
         return {"status": "crashed", "reason": ended.reason} if ended.code != USAGE else {
@@ -120,10 +133,6 @@ def _no_number(word):
 
 
 def _columns(path, keep):
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = csv.reader(file)
-        names = next(rows, [])
-        chosen = [place for place, name in enumerate(names) if keep in (("outputs",), ("all",)) or name in ("t", *keep)]
-        values = [[float(row[place]) for place in chosen] for row in rows]
-    # JSON has no number that is not finite.
-    return {names[place]: [row[at] if math.isfinite(row[at]) else None for row in values] for at, place in enumerate(chosen)}
+    with open(path, newline="", encoding="utf-8") as file:  # JSON has no number that is not finite
+        return {name: [value if math.isfinite(value) else None for value in map(float, values)]
+                for name, *values in zip(*csv.reader(file), strict=True) if keep in (("outputs",), ("all",)) or name in ("t", *keep)}

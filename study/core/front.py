@@ -94,9 +94,8 @@ def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
         begin = log.tell()
-        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
-                                   start_new_session=True, preexec_fn=lambda parent=os.getpid(): child.die_with(parent),
-                                   env=os.environ | {FRONT: str(os.getpid())})
+        process = subprocess.Popen(child.tied('exec "$@"', *command), stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
+                                   start_new_session=True, env=os.environ | {FRONT: str(os.getpid())})
         try:
             while process.poll() is None:
                 show(display)

@@ -81,7 +81,7 @@ def pages(studyset):
     parts = studyset.facts["parts"]
     for part in parts:
         importlib.import_module(f"analysis.{part}.tables")
-    with ProcessPoolExecutor(cores(), get_context("fork"), child.die_with, (os.getpid(),)) as pool:
+    with ProcessPoolExecutor(cores(), get_context("fork"), end_with, (os.getpid(),)) as pool:
         list(pool.map(page, [studyset] * len(parts), parts))
     index(studyset)
 

@@ -1,4 +1,4 @@
-# Locks that vanish with the process that holds them.
+# Locks that vanish with the process that holds them; other load on the machine that is locked.
 import contextlib
 import fcntl
 import os
@@ -6,10 +6,11 @@ import time
 from pathlib import Path
 
 from analysis.core.files import StudyError
-from study.core import machine
 
 POLL = 0.5  # s
 MACHINE = Path(os.environ.get("MBS_LOCKS", "/tmp"))  # one place whatever a job's TMPDIR is; tests have theirs
+# Of the processors, by the load's mean over a minute, from which the machine is busy, without what is timed: as `mbs bench` has it.
+OTHERS = max(0.5, (os.cpu_count() or 1) / 2 - 1)
 
 
 def only_one(folder, seconds=0):
@@ -28,8 +29,8 @@ def only_one_study(wait=False, tell=print, most=float("inf")):
     path = MACHINE / "mbs-study.lock"
     held = f"another study is measuring on this machine ({path} is held): wait until it is done, or queue with --wait"
     with _hold(path, held, most if wait else 0, tell):
-        if said := machine.busy():
-            tell(said)
+        if (load := os.getloadavg()[0]) > OTHERS:
+            tell(f"the machine is busy (load {load:.1f} over the last minute): times may be too long")
         yield
 
 

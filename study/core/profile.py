@@ -2,8 +2,8 @@
 import importlib
 from collections import namedtuple
 
-from analysis.core.files import MEND, ROOT, StudyError, misfit, need_kind, read_yaml
-from analysis.core.parts import parts
+from analysis.core.files import ANY, MEND, ROOT, StudyError, need_kind, read_yaml
+from analysis.core.view import parts
 
 FOLDER = ROOT / "study" / "profiles"
 MENDED = f"{FOLDER.relative_to(ROOT) / 'quick.yaml'} explains every setting"
@@ -29,24 +29,13 @@ def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind. A set may be older than a part:
     its profile needs the `chosen` ones."""
     mend = MENDED if path.parent == FOLDER else MEND
-    data = read_yaml(path, mend)
-    need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
-    if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
-        raise StudyError(f"{path}: blas must name a pair for all")
-    need_kind(path, data, {"title": str, "blas": {...: str}, "dropped": str}, mend)
-    more = data["parts"].keys() if chosen is not None and isinstance(data["parts"], dict) else ()
-    need_keys(path, "parts", data["parts"], {*(parts() if chosen is None else chosen), *more})
-    for part in parts() if chosen is None else chosen:
-        settings, wanted = data["parts"][part], {"seconds": float, **plan_of(part).SETTINGS}
-        need_keys(path, part, settings, set(wanted))
-        for key, kind in wanted.items():
-            where, value = f"{path}: {part}: {key}", settings[key]
-            outer = kind if isinstance(kind, type) else type(kind)
-            if misfit(value, outer):
-                raise StudyError(f"{where} must be of type {outer.__name__}, is {value!r}")
-            need_kind(path, settings, {key: kind}, mend)
-            if kind in (int, float) and not 0 <= value < float("inf"):
-                raise StudyError(f"{where} must be a number of at least 0, is {value!r}")
+    wanted = {part: {"seconds": float, **plan_of(part).SETTINGS} for part in (parts() if chosen is None else chosen)}
+    data = need_kind(path, read_yaml(path, mend), {"title": str, "blas": {"all": str, ...: str}, "dropped": str,
+                                                   "parts": wanted if chosen is None else ANY | wanted}, mend)
+    for part, kinds in wanted.items():
+        for key, value in data["parts"][part].items():
+            if kinds[key] in (int, float) and not 0 <= value < float("inf"):
+                raise StudyError(f"{path}: {part}: {key} must be a number of at least 0, is {value!r}")
     return Profile(name, data["title"], data["blas"], data["dropped"], data["parts"])
 
 
@@ -72,10 +61,3 @@ def by_share(columns):
     def run(lab, column):
         columns[column][1](lab)
     return seconds, run
-
-
-def need_keys(path, what, data, keys):
-    if not isinstance(data, dict):
-        raise StudyError(f"{path}: {what} needs settings, found {type(data).__name__}")
-    if wrong := sorted(map(str, set(data) ^ keys)):
-        raise StudyError(f"{path}: {what}: missing or unknown: {', '.join(wrong)}")

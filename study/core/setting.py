@@ -1,7 +1,7 @@
 # A setting of a step: the scheme and what is changed beside it, as options of `mbs simulate`, `bench` and `check`.
 from dataclasses import dataclass, field
 
-from analysis.core.files import ROOT, StudyError, from_yaml
+from analysis.core.files import ROOT, StudyError, read_yaml
 
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
@@ -24,10 +24,8 @@ class Setting:
     @property
     def needs(self):
         """The words of "settings" in `mbs list --json` that a variant must have: of Registry.serves."""
-        found = {self.scheme.rstrip("46")}
-        for option, value in self.changes:
-            found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
-        return found - {"penalty", "double"}
+        asked = (value if option == "precision" else option for option, value in self.changes if option not in EVERYONE)
+        return {self.scheme.rstrip("46"), *asked} - {"penalty", "double"}
 
     # As one types it, without what is the default.
     typed = property(lambda self: " ".join(self.words()).removeprefix("--scheme penalty").strip())
@@ -47,9 +45,7 @@ class Setting:
 def read_settings(path=LIST):
     """[Setting] of study/settings.yaml, the default one first."""
     found = []
-    for entry in from_yaml(path.read_text(encoding="utf-8"))["settings"]:
-        if not isinstance(entry.get("name"), str) or set(entry) - {"name", "options"}:
-            raise StudyError(f"{path}: {entry} must have a name, may have options, no more")
+    for entry in read_yaml(path, settings=[{"name": str, "options?": dict}])["settings"]:
         options = {option: "" if value is True else str(value) for option, value in entry.get("options", {}).items()}
         found.append(Setting(options.pop("scheme", "penalty"), tuple(options.items()), entry["name"]))
     if len({one.name for one in found}) < len(found) or found[0] != Setting():

@@ -8,10 +8,9 @@ from functools import cached_property
 
 from analysis.core import records
 from analysis.core.files import ROOT, StudyError, digest, read_object, write_json, write_text
-from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.schema import need_unchanged
-from analysis.core.view import Folder, context_in, facts_of
+from analysis.core.view import Folder, context_in, facts_of, parts
 from study.core import executor, locks, profile as profiles
 from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of

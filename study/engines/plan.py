@@ -6,7 +6,7 @@ import random
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from analysis.core.files import ROOT, StudyError, from_yaml
+from analysis.core.files import ROOT, StudyError, read_yaml
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of
@@ -41,17 +41,15 @@ class EngineSetting:
 
 def read_list(path=LIST):
     """{engine: [EngineSetting]}"""
-    listed = from_yaml(path.read_text(encoding="utf-8"))
-    values = {over: tuple(map(float, found)) for over, found in listed["values"].items()}
-    for over, found in values.items():
-        if list(found) != sorted(found, reverse=True):
+    listed = read_yaml(path, values={"step": [float], "accuracy": [float]}, engines={...: [{"over": str, "options?": dict}]})
+    values, found = listed["values"], {}
+    for over, several in values.items():
+        if several != sorted(several, reverse=True):
             raise StudyError(f"{path}: values of {over}: the coarsest must be the first")
-    found = {}
     for engine, entries in listed["engines"].items():
-        for entry in entries:
-            if set(entry) - {"over", "options"} or entry.get("over") not in values:
-                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, no more")
-        found[engine] = [EngineSetting(engine, one["over"], values[one["over"]], tuple(one.get("options", {}).items())) for one in entries]
+        if unknown := [entry for entry in entries if entry["over"] not in values]:
+            raise StudyError(f"{path}: {engine}: {unknown[0]}: over must be one of {', '.join(values)}")
+        found[engine] = [EngineSetting(engine, one["over"], tuple(values[one["over"]]), tuple(one.get("options", {}).items())) for one in entries]
         if len(set(found[engine])) < len(entries):
             raise StudyError(f"{path}: {engine}: settings must differ")
     return found
@@ -137,10 +135,9 @@ class Bench:
     def rounds(self, engines, ours):
         """What may be the fastest at some error, theirs and ours in turn, in an order that is new in every round."""
         theirs, mine = candidates(engines, ours, self.lab.registry.own)
-        cells = []
-        for one in [*theirs.to_dict("records"), *mine.to_dict("records")]:
-            often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
-            cells.append(replace(one["cell"], settings=(*one["cell"].settings, *often), role=ROUND, timed=True, keep=(), every=0))
+        often = [(one["cell"], ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ())
+                 for one in [*theirs.to_dict("records"), *mine.to_dict("records")]]
+        cells = [replace(cell, settings=(*cell.settings, *more), role=ROUND, timed=True, keep=(), every=0) for cell, more in often]
         for number in range(1, self.lab.settings["rounds"] + 1):
             order = random.Random(f"{SEED}:{self.subject.name}:{number}").sample(cells, len(cells))
             self.lab.tell(f"round {number} of {self.lab.settings['rounds']}")

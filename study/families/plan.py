@@ -1,13 +1,14 @@
 # Families of real mechanisms at their own fill: who is fastest on each, by size, in both forms of the step.
-from analysis.core.files import RULE, StudyError, read_json
+from analysis.core.files import RULE, read_json
 from analysis.core.timing import LEFT_OUT
 from analysis.families.rule import shape
 from analysis.families.tables import SCHEMES
 from study.core.cell import Cell
 from study.core.contest import Form, about, contests, controls_of, elsewhere, times_of, usual
+from study.core.profile import by_share
 from study.core.setting import Setting
 
-SETTINGS = {"scenes": [str], "processes": {...: int}, "samples": int}
+SETTINGS = {"scenes": [str], "processes": dict.fromkeys(SCHEMES, int), "samples": int}
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long
@@ -16,13 +17,7 @@ MOST_S = 0.25  # of a step, beyond which a form is not timed: the gate, in long 
 FLOPS, ENTRIES = 2e-9, 2e-8  # s a step, about, for one operation of `mbs describe` and one non-zero of L
 
 
-def columns(settings):
-    if settings["processes"].keys() != set(SCHEMES):
-        raise StudyError(f"profile: families: processes: has a number for each of {', '.join(SCHEMES)}")
-    return {"mechanisms": settings["seconds"]}
-
-
-def run(lab, column):
+def mechanisms(lab):
     listed = lab.settings["scenes"]
     controls = controls_of(listed)
     here, looks, compared = usual(lab), {}, read_json(RULE).get("candidates", {})  # the next rule needs their times where others were faster
@@ -69,3 +64,6 @@ def falling(name, before):
     """Whether somebody falls behind the libraries in the looks of smaller sizes."""
     known = [one[name] for one in before if name in one]
     return known[-1:] == [float("inf")] or len(known) > 1 and known[-1] > FAR and known[-1] > known[-2]
+
+
+columns, run = by_share({"mechanisms": (1.0, mechanisms)})

@@ -3,7 +3,6 @@
 from analysis.core.files import StudyError
 from analysis.map.timed import leaders
 from study.core.cell import Cell, Contender, by_environment
-from study.core.profile import need_keys
 from study.core.timing import measure
 from study.map.timed import NATURAL, Scene, TimedScene, alternatives, fit
 
@@ -17,7 +16,6 @@ CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 def columns(settings):
     for entry in settings["columns"]:
-        need_keys("profile: map", "a column", {key: 0 for key in entry if key != "slower"}, {"variables", "seconds", "fills"})
         if entry["variables"] < 4 or entry["variables"] % 2 or entry["fills"][:1] != [NATURAL]:
             raise StudyError("profile: map: a column has an even number of variables from 4 on, and fills that start with "
                              f"{NATURAL}: found {entry!r}")

@@ -159,7 +159,7 @@ def test_settings_are_read_and_refused(tmp_path):
     loose = Setting("rattle4", (("tolerance", "loose"),))
     assert (loose.name, loose.file_name, loose.order, loose.parent) == ("rattle4, tolerance loose", "rattle4-tolerance.loose", 4, Setting("rattle4"))
     assert loose.words(tolerance=1e-8)[-1] == "1e-08" and (loose.loosened, default.loosened) == (1e3, None)
-    for text, what in (("[{name: a, option: {}}]", "no more"), ("[{name: a}, {name: a}]", "must differ"),
+    for text, what in (("[{name: a, option: {}}]", "option is unknown"), ("[{name: a}, {name: a}]", "must differ"),
                        ("[{name: a, options: {scheme: rattle}}]", "first setting must be the default")):
         (tmp_path / "settings.yaml").write_text(f"settings: {text}")
         with pytest.raises(StudyError, match=what):

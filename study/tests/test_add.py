@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pandas
 import pytest
 
-from analysis.core import records, schema
+from analysis.core import records, schema, timing
 from analysis.core.files import StudyError, digest, read_json, write_json
 from analysis.core.registry import Registry
 from analysis.core.timing import NO_VARIANCE
@@ -139,7 +139,8 @@ def test_what_is_asked_at_once_is_held_to_that(tmp_path, capsys):
     rows = [{"part": "map", "scheme": "penalty", "layer": layer, "chance": chance, "decided": chance < 0.05, "holm": False, "status": "ok", "rival": "a",
              "hands": "changes" if chance < 0.05 else "open"} for layer, chances in (("all", (0.001, 0.03, 0.04, 0.5)), ("libraries", (0.04,)))
             for chance in chances]
-    found = add.at_once([*rows, {"part": "map", "scheme": "penalty", "layer": "all", "status": "dropped", "hands": "not timed"}])
+    untimed = {"part": "map", "scheme": "penalty", "layer": "all", "status": "dropped", "hands": "not timed"}
+    found = timing.holm([*rows, untimed], "part", "scheme", "layer")
     assert [row["holm"] for row in found[:-1]] == [True, False, False, False, True] and "holm" not in found[-1]
     add.tell(shelf.table(found, "added"), tmp_path, NEW)
     assert "4 cells change hands, 1 are open, 0 stay, 1 were not timed; asked all at once 2 change hands" in capsys.readouterr().out

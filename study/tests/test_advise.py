@@ -338,10 +338,18 @@ def test_a_motion_that_is_refused_at_any_step_is_not_tried_in_shorter_ones():
     assert json.dumps(told, allow_nan=False) and told["settings"][0]["pilots"][0]["step_us"] is None
 
 
+def told_with(**advice):
+    """The text of an answer that is met, with some of its advice in place of its own."""
+    run = Invented()
+    told = answer.as_json(seek(Question("bar", 1e-3, 2.0, None, 45.0), [PENALTY], run.DESCRIBED, run.VARIANTS, run), run, "folder")
+    return answer.text(told | {"advice": told["advice"] | advice})
+
+
 def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
-    estimate = {"estimate": 0.0114, "low": 0.0103, "high": 0.0125}
-    assert answer._error(estimate | {"exact": 0.0098}).startswith("0.0098 m, from the exact motion; by half the step 0.0114 m")
-    assert answer._error(estimate | {"exact": None}).startswith("0.0114 m (0.0103")
+    error = {"estimate": 0.0114, "low": 0.0103, "high": 0.0125, "exact": None}
+    assert "  expected error        0.0114 m (0.0103 to 0.0125), verified over 2 s\n" in told_with(error=error)
+    exact = "0.0098 m, from the exact motion; by half the step 0.0114 m (0.0103 to 0.0125), verified over"
+    assert f"  expected error        {exact} 2 s\n" in told_with(error=error | {"exact": 0.0098})
 
 
 def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=()):
@@ -734,11 +742,13 @@ def test_where_every_pilot_was_lost_the_answer_says_how():
 
 
 def test_a_line_that_ends_as_degraded_says_why_and_why_that_is_no_objection():
-    told = {"status": "degraded", "status_reason": "local errors add up", "error": {"high": 2e-3}, "warnings": []}
-    first, second = answer._ends_as(told)
-    assert "degraded: local errors add up" in first and "half the step shows 0.002 m at most" in second
-    assert len(answer._ends_as(told | {"status": "ok"})) == 1
-    assert answer._ends_as(told | {"status": "ok", "warnings": ["the tolerance is loose"]})[:2] == ["ok", "warning: the tolerance is loose"]
+    told = {"status": "degraded", "status_reason": "local errors add up", "error": {"estimate": 1e-3, "low": 1e-3, "high": 2e-3, "exact": None}, "warnings": []}
+    next_line = "\n" + 24 * " "
+    objection = f"{next_line}by the program's own bounds, which know nothing of the error that you asked for; half the step shows 0.002 m at most\n"
+    assert f"  ends as               degraded: local errors add up{objection}  time per step" in told_with(**told)
+    assert "  ends as               ok\n  time per step" in told_with(**told | {"status": "ok"})
+    warned = told_with(**told | {"status": "ok", "warnings": ["the tolerance is loose", "it is Monday"]})
+    assert f"  ends as               ok{next_line}warning: the tolerance is loose{next_line}warning: it is Monday{objection}" in warned
 
 
 def test_what_half_the_step_does_not_tell_is_said():

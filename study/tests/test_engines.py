@@ -206,12 +206,12 @@ def test_settings_are_read_and_refused(tmp_path):
     assert list(listed) == ["simbody", "mujoco", "ode", "bullet", "dart", "ida"] and all(len(one) > 5 for one in listed.values())
     assert all(one[0].options == () for one in listed.values())  # an engine's own values are always there
     assert listed["ode"][1].words(2.5e-3) == ("--setting", "erp=1", "cfm=1e-14", "step=0.0025")
-    for text, what in (("[{over: iterations}]", "must have over"), ("[{over: step, option: {}}]", "no more"),
+    for text, what in (("[{over: iterations}]", "iterations.*one of step, accuracy"), ("[{over: step, option: {}}]", "option is unknown"),
                        ("[{over: step}, {over: step}]", "settings must differ")):
-        (tmp_path / "s.yaml").write_text(f"values: {{step: [1e-2]}}\nengines: {{able: {text}}}")
+        (tmp_path / "s.yaml").write_text(f"values: {{step: [1.0e-2], accuracy: []}}\nengines: {{able: {text}}}")
         with pytest.raises(StudyError, match=what):
             read_list(tmp_path / "s.yaml")
-    (tmp_path / "s.yaml").write_text("values: {step: [1e-3, 1e-2]}\nengines: {}")
+    (tmp_path / "s.yaml").write_text("values: {step: [1.0e-3, 1.0e-2], accuracy: []}\nengines: {}")
     with pytest.raises(StudyError, match="the coarsest must be the first"):
         read_list(tmp_path / "s.yaml")
 

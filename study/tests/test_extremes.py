@@ -10,7 +10,7 @@ from analysis.core import records
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.core.view import View
-from analysis.extremes import cells, judge, tables, trials, verdicts
+from analysis.extremes import battery, cells, judge, tables, trials
 from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
 from analysis.extremes.motions import GRAVITY, Chain, Flat, twin_rod
@@ -267,8 +267,7 @@ def made(studyset):
     """The tables as the schema has them."""
     found = tables.build(records.read_part(studyset.folder, "extremes"), View(studyset.folder, "extremes"))
     schema = of_part("extremes")
-    return {name: conform(frame if len(frame.columns) else frame.reindex(columns=list(schema[name])), schema[name], name)
-            for name, frame in found.items()}
+    return {name: conform(rows, schema[name], name) for name, rows in found.items()}
 
 
 def test_the_battery_on_the_real_program_is_resumed(studyset, monkeypatch):
@@ -310,4 +309,4 @@ def test_trials_on_the_real_program(studyset, monkeypatch):
     assert len(table) == 2 * len(some) and set(table.status) <= {"ok", "plausible", "degraded", "refused", "diverged", "wrong-branch"}
     right = table[table.verdict == "right"]
     assert {"pendulum", "A01", "kite at 0.01", "Watt at 0.01, 1 per s"} <= set(right.value) and (right.true_error < 0.01).all()
-    assert not (table.verdict == verdicts.SILENT).any()
+    assert not (table.verdict == battery.SILENT).any()

@@ -7,9 +7,9 @@ from functools import cache
 
 import yaml
 
-from analysis.core import parts as lists, site
+from analysis.core import site, view as lists
 from analysis.core.files import ROOT, write_json
-from analysis.core.parts import pages, parts
+from analysis.core.view import pages, parts
 
 BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
                ("extremes", "scenes"),  # the same problems

@@ -184,7 +184,7 @@ def test_sweeps_are_asked_of_those_that_take_part():
 def swept(tmp_path, table="table", end=""):
     """`sweep_process` on a program that stands in for `mbs`: its last word is the output."""
     program = tmp_path / "mbs"
-    program.write_text(f"#!/bin/sh\nfor out; do :; done\necho {table} > $out\n{end}\n")
+    program.write_text(f"#!/bin/sh\nfor out; do :; done\necho {table} > $out\n{end or 'echo 5 lanes: 5 ok'}\n")
     program.chmod(0o755)
     return subprocess.run([ROOT / "study/limit/sweep_process", "four-bar:1", "--implementation", "a/b", "--vary", "x=1:2:3", "--lanes", "5",
                            "--duration", "0.1"], env=os.environ | {"MBS_PROGRAM": str(program)}, capture_output=True, text=True, check=False)
@@ -195,7 +195,7 @@ def test_a_sweep_by_one_and_by_two_jobs_must_give_one_table(tmp_path):
     assert (done.returncode, done.stderr) == (1, "the tables by one and two jobs differ\n")
     found = json.loads(swept(tmp_path).stdout)
     assert [row["jobs"] for row in found["rows"]] == [1, 2] and all(row["wall_s"] > 0 < row["merge_s"] for row in found["rows"])
-    assert found["bytes"] == len("table\n")
+    assert (found["bytes"], found["lanes"]) == (len("table\n"), 5)
 
 
 @pytest.mark.parametrize("failed, status, code", [(1, 1, 0), (5, 1, 2), (1, 2, 2)])
@@ -231,9 +231,9 @@ def test_a_large_sweep_is_recorded(tmp_path):
     [path] = (tmp_path / "kept").iterdir()
     kept = read_json(path)
     assert path.name == "four-bar-10.json" and kept["outcomes"] == {"ok": 49, "diverged": 1} and kept["context"]["dirty"] == "false"
-    assert [(row["jobs"], row["lanes"]) for row in (*kept["part"], kept["whole"])] == [(1, 5), (2, 5), (2, 50)]
-    assert [("--shard 1/10" in words, words.split()[0]) for words in ran] == [
-        (True, "sweep"), (True, "sweep"), (False, "sweep"), (False, "merge-sweep")]
+    assert [(row["jobs"], row["lanes"]) for row in (*kept["part"], kept["whole"])] == [(jobs, 5) for jobs in (1, 2, 2, 1) * 2 + (1, 2)] + [(2, 50)]
+    assert [("--shard 1/10" in words, words.split()[0]) for words in ran] == [(True, "sweep")] * 10 + [(False, "sweep"), (False, "merge-sweep")]
+    assert kept["gain"] == fragments.gain(kept["part"]) and kept["gain"]["turns"] == 5
     assert max(row["memory_mb"] for row in (*kept["part"], kept["whole"])) < 60, "of the program, not of who started it"
     assert kept["whole"]["command"].startswith("build/mbs sweep four-bar:10 ") and str(tmp_path) not in path.read_text()
     assert (tmp_path / "mbs").exists() and kept["program"] == digest(tmp_path / "mbs") and len(kept["table"]) == 64
@@ -249,16 +249,17 @@ def test_a_large_sweep_that_is_no_evidence_is_not_recorded(tmp_path, how, said):
 
 
 def test_what_is_shown_of_a_large_sweep_is_projected_beside_what_was_observed():
-    row = {"wall_s": 2.0, "memory_mb": 10.0, "lanes": 100}
-    record = {"scene": "s:1", "implementation": "a/b", "lanes": 1000, "nodes": 10, "part": [row, row | {"wall_s": 1.0}],
+    part = [{"jobs": jobs, "wall_s": wall, "memory_mb": 10.0, "lanes": 100} for jobs, wall in ((1, 2.0), (2, 1.0), (2, 1.0), (1, 1.5), (1, 9.0), (2, 5.0))]
+    record = {"scene": "s:1", "implementation": "a/b", "lanes": 1000, "nodes": 10, "part": part,
               "whole": {"wall_s": 12.5, "memory_mb": 30.0, "command": "build/mbs sweep s:1"}, "merge": {"wall_s": 3.0, "memory_mb": 4.0},
               "context": {"commit": "c" * 40, "cpu_model": "P", "num_cpus": 2}, "program": "d" * 64, "table": "e" * 64, "bytes": 2e6,
               "outcomes": {"ok": 990, "diverged": 10}}
     shown = dict(line.strip("| ").split(" | ") for line in fragments.million([record]).splitlines()[2:])
-    assert [shown[name] for name in ("lanes a second, the part by one job", "the part by two jobs", "all lanes by two jobs",
+    assert [shown[name] for name in ("lanes a second, the part by one job", "the part by two jobs",
+                                     "two jobs over one, turn by turn: median (least to most)", "all lanes by two jobs",
                                      "all lanes by two jobs, projected from the part, s", "observed, s", "outcomes",
                                      "projected: parts on as many nodes at once, then the table, s", "memory of the largest process, MB")] == [
-        "50", "100", "80", "10", "12.5", "10 diverged, 990 ok", "4 (10 nodes)", "30"]
+        "50", "100", "1.8 (1.5 to 2; turns: 3)", "80", "10", "12.5", "10 diverged, 990 ok", "4 (10 nodes)", "30"]
     assert fragments.million([]) == "No record is stored.\n"
 
 

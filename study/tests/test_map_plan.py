@@ -3,12 +3,11 @@ import shutil
 import tempfile
 from types import SimpleNamespace
 
-import pandas
 import pytest
 import yaml
 
 from analysis.core import records, schema
-from analysis.core.files import StudyError
+from analysis.core.files import StudyError, misfit
 from analysis.core.registry import Registry
 from analysis.core.view import View
 from analysis.map import tables
@@ -51,8 +50,7 @@ def made(lab):
     folder = lab.set.folder
     view, known = View(folder, "map"), schema.of_part("map")
     found = tables.build(records.read_part(folder, "map"), view)
-    return {name: schema.conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(known[name])), known[name], name)
-            for name, frame in found.items()}
+    return {name: schema.conform(rows, known[name], name) for name, rows in found.items()}
 
 
 def statuses(tidy, scene):
@@ -125,11 +123,16 @@ def test_what_the_budget_does_not_allow_is_dropped_and_says_so(run):
 @pytest.mark.parametrize("columns, words", [
     ([{"variables": 9, "seconds": 1, "fills": ["natural"]}], "even number"),
     ([{"variables": 10, "seconds": 1, "fills": [0.5]}], "start with natural"),
-    ([{"variables": 10, "fills": ["natural"]}], "seconds"),
     ([{"variables": 10, "seconds": 101, "fills": ["natural"]}], "its columns take 101 s")])
 def test_a_wrong_column_is_one_clear_line(columns, words):
     with pytest.raises(StudyError, match=words):
         plan.columns(SETTINGS | {"columns": columns})
+
+
+def test_a_column_has_all_its_settings_and_no_others():
+    column = {"variables": 10, "seconds": 1, "fills": ["natural"], "slower": 3}
+    assert misfit([column], plan.SETTINGS["columns"]) == ""
+    assert misfit([column, {"variables": 10, "fills": [], "fill": 1}], plan.SETTINGS["columns"]) == "entry 2: seconds is missing, fill is unknown"
 
 
 @pytest.mark.parametrize("name", ["smoke", "quick", "full"])

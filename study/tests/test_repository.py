@@ -2,6 +2,7 @@
 import re
 import shutil
 import subprocess
+from collections import Counter
 
 import pandas
 import pytest
@@ -9,8 +10,7 @@ import yaml
 
 from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
-from analysis.core.parts import parts
-from analysis.core.view import View
+from analysis.core.view import View, parts
 from study.tests.browser import TALL, Browser
 from study.tests.conftest import study
 from study.tools import fragments
@@ -95,6 +95,7 @@ def test_stored_sweeps_are_a_million_lanes_of_a_clean_tree_in_little_memory():
     for record in map(read_json, fragments.SWEEPS.glob("*.json")):
         assert str(record["context"]["dirty"]).lower() == "false" and record["lanes"] >= 10**6 == 100 * record["part"][0]["lanes"]
         assert record["lanes"] == sum(record["outcomes"].values()) == record["whole"]["lanes"] == record["merge"]["lanes"]
+        assert Counter(row["jobs"] for row in record["part"]) == dict.fromkeys((1, 2), fragments.gain(record["part"])["turns"])
         assert max(row["memory_mb"] for row in (*record["part"], record["whole"], record["merge"])) < 500
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from study.tests.browser import TALL
 
-from analysis.core.parts import parts
+from analysis.core.view import parts
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 PAGES = ["index", "explore", *parts()]

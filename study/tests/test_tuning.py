@@ -7,7 +7,7 @@ import pytest
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.tests.tables_of import tables_of
-from analysis.tuning import page, sentences, tables
+from analysis.tuning import page, tables
 from study.core.cell import Contender
 from study.tuning import plan
 
@@ -73,5 +73,5 @@ def test_page_and_sentences():
     full = made(gate(), *(bench(number, a=10.0, a_metis=12.0 + 0.01 * number) for number in (1, 2, 3)))
     known = page.context(full, VIEW)
     assert known["scenes"] == {"one/a": [SCENE]} and len(known["groups"]["one/a"]) == 2 and len(known["lost"]) == 1
-    assert "1 are shown to be longer than with the variant's own, 0 shorter" in sentences.answers(full, VIEW)[0]["text"]
-    assert "Not measured" in sentences.answers(made(gate("dropped")), VIEW)[0]["text"] and page.context(made(), VIEW)["groups"] == {}
+    assert "1 are shown to be longer than with the variant's own, 0 shorter" in page.answers(full, VIEW)[0]["text"]
+    assert "Not measured" in page.answers(made(gate("dropped")), VIEW)[0]["text"] and page.context(made(), VIEW)["groups"] == {}

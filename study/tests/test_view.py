@@ -273,9 +273,9 @@ def test_faces_are_those_of_a_solid_and_look_outward(tmp_path):
     motion = motion._replace(positions=numpy.concatenate([motion.positions, numpy.tile(corners, (len(motion.times), 1, 1))], axis=1))
     scene = replace(scene, bodies=[program.Body(name, [count + k for k in corners_of], [])
                                    for name, corners_of in (("box", range(8)), ("plate", (0, 1, 2, 3)), ("bar", (0, 7)))])
-    box, plate, bar = page.faces(scene, motion)
-    assert len(box) == 12 and plate == bar == []
     at = motion.positions[0]
+    box, plate, bar = (page.faces(at, body.points) for body in scene.bodies)
+    assert len(box) == 12 and plate == bar == []
     volume = sum(numpy.dot(at[a], numpy.cross(at[b], at[c])) for a, b, c in box) / 6
     assert volume == pytest.approx(6)  # positive: all look outward
 

@@ -4,10 +4,11 @@ import datetime
 import shutil
 from collections import Counter
 from dataclasses import dataclass
+from pathlib import Path
 
 from analysis.core import schema, timing
 from analysis.core.files import ROOT, StudyError, digest, read_object, write, write_json
-from analysis.core.gather import gather
+from analysis.core.text import layout
 from analysis.core.view import context_in
 from study.core import executor, locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
@@ -152,14 +153,7 @@ def measured(folder, name, known):
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one, said, found in zip(asked, verdicts, records)
             for row in _rows(one, known, said, found)]
-    return _finish(folder, column, lab, at_once(rows))
-
-
-def at_once(rows):
-    """Marks which rows stay decided when all of a part, form and layer are asked at once, as the set's own tables do."""
-    for asked in gather(((row["part"], row["scheme"], row["layer"]), row) for row in rows).values():
-        timing.holm(asked)
-    return rows
+    return _finish(folder, column, lab, timing.holm(rows, "part", "scheme", "layer"))
 
 
 def contexts(folder, contenders):
@@ -263,22 +257,14 @@ def _finish(folder, column, lab, rows):
 
 
 def tell(table, folder, name):
-    print(f"\ntime of {name} over that of the fastest other one, timed anew (95 % interval)")
+    parts = []
     for part, rows in table.groupby("part", sort=False):
-        print(f"\n{part}")
         ranked = rows[(rows.status == "ok") & (rows.rival != "")]
-        for row in ranked.itertuples():
-            print(f"{row.scene:24} {row.scheme:12} {row.layer:10} {row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
-                  + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
         others = rows.drop(ranked.index)
         others["reason"] = others.reason.str.replace(": the scene has .*", "", regex=True)  # of a term: where, in each of them
         alike = others.reason.str.replace(NUMBER, "", regex=True)
-        for (status, _), left in others.groupby(["status", alike], sort=False):
-            reason = left.reason.iloc[0] + " (or alike)" * (left.reason.nunique() > 1)
-            print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
-        for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
-            print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")
-        counts, held = Counter(rows.hands), (rows.holm.fillna(False) & (rows.hands == "changes")).sum()
-        print(f"{part}: {counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
-              f"{counts['not timed']} were not timed; asked all at once {held} change hands")
-    print(f"table: {folder / 'added' / name.replace('/', '.')}.csv")
+        left = [(status, some.reason.iloc[0] + " (or alike)" * (some.reason.nunique() > 1), some.scene.unique())
+                for (status, _), some in others.groupby(["status", alike], sort=False)]
+        parts.append((part, ranked, left, Counter(rows.hands), (rows.holm.fillna(False) & (rows.hands == "changes")).sum()))
+    path = folder / "added" / f"{name.replace('/', '.')}.csv"
+    print(layout(Path(__file__).with_name("add.txt.j2")).render(name=name, parts=parts, table=path))

@@ -60,7 +60,6 @@ def against(arguments):
         print(f"{row.implementation:28} {row.scene:14} " + (row.reason[:80] if row.reason else (
             f"{row.old_us:10.3g} -> {row.new_us:10.3g} us  {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})")))
     print(f"table: {folder / 'ratios.csv'}")
-    return 0
 
 
 def _resolve(name):

@@ -1,12 +1,15 @@
 # study/new NAME: writes implementations/NAME/, which compiles and does nothing yet, and its line in the list.
 import re
 import shutil
+from pathlib import Path
 
-from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.files import ROOT, StudyError, read_yaml, write_text
+from analysis.core.text import layout
 from study.core.options import Parser
 
 SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
+LIBRARIES = read_yaml(SKELETON.with_name("libraries.yaml"))
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const
 consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit
@@ -15,21 +18,6 @@ public register reinterpret_cast requires return short signed sizeof static stat
 throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
 TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
          "registry", "implementation", "simulation", "available", "unavailable"}  # names of the harness, of C++ and of CMake
-EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
-COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
-IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
-ILAVER = '\nextern "C" void ilaver_(int* major, int* minor, int* patch);\n'
-LAPACK = """std::string lapack_version() {
-  int major = 0, minor = 0, patch = 0;
-  ilaver_(&major, &minor, &patch);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
-}
-
-"""
-# (name, licence, version as C++, include, how it takes what is stored, what the version needs outside of and inside namespaces)
-LIBRARIES = {"none": ("none", "", '""', "", "", "", ""),
-             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE, "", ""),
-             "blas": ("LAPACK", "BSD-3-Clause", "lapack_version()", "", COLUMNS.format("LAPACK"), ILAVER, LAPACK)}
 
 
 def new(arguments):
@@ -46,30 +34,17 @@ def new(arguments):
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
-        values = dict(zip(("@NAME@", "@LIBRARY@", "@LICENCE@", "@VERSION@", "@INCLUDE@", "@STORAGE@", "@ILAVER@", "@LAPACK@"),
-                          (options.name, *LIBRARIES[options.library])))
+        values = LIBRARIES[options.library] | {"NAME": options.name}
         for path in sorted(SKELETON.iterdir()):
             stem, _, only = path.name.partition("@")
             if only in ("", options.library):
-                write_text(folder / stem, re.sub("@[A-Z]+@", lambda one: values[one[0]], path.read_text(encoding="utf-8")))
+                write_text(folder / stem, re.sub("@([A-Z]+)@", lambda one: values[one[1]], path.read_text(encoding="utf-8")))
         before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
         write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    commands = {"study/setup": "if it has not run yet: installs what is missing, builds all",
-                "cmake --build build --target mbs": "after each function",
-                f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
-                "build/mbs reference four-bar:1 --moved": "the reference's numbers",
-                f"build/mbs check --implementation {options.name}": "the whole gate",
-                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees",
-                f"study/add {options.name}": "beside the leaders, once study/run --part map has run on this machine"}
-    print(f"implementations/{options.name}/ is written and in the list. Next:")
-    for command, what in commands.items():
-        print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
-    print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
-bottom, and climb the ladder after each function. CONTRIBUTING.md has the tests, and what a pull request shows.""")
-    return 0
+    print(layout(Path(__file__).with_name("new.txt.j2")).render(name=options.name))
 
 
 def listed():

@@ -1,8 +1,6 @@
 # Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
 from pathlib import Path
 
-import pandas
-
 from analysis.core import schema
 from analysis.core.files import write_json
 from study.core import profile as profiles
@@ -31,7 +29,7 @@ def open_shelf(folder, tool, known, only, names, quiet=False, **question):
 
 def table(rows, name):
     """Rows as the table of that name in schema.yaml."""
-    return schema.conform(pandas.DataFrame(rows), schema.read(Path(__file__).with_name("schema.yaml"))[name], name)
+    return schema.conform(rows, schema.read(Path(__file__).with_name("schema.yaml"))[name], name)
 
 
 class ToolLab(Lab):

@@ -8,7 +8,7 @@ import subprocess
 
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_object
-from analysis.core.parts import parts
+from analysis.core.view import parts
 from study.core import locks
 from study.core.options import Parser, directory
 from study.core.profile import columns_of
@@ -54,7 +54,6 @@ def store(arguments):
     if pictures:  # others that study/figures draws are ignored
         print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
     print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")
-    return 0
 
 
 def short(processor):
@@ -81,9 +80,7 @@ def of_records(kept):
     """What is wrong with its records and the tables that were made of them."""
     for part in kept.facts["parts"]:
         try:
-            there, tables = schema.records_of(kept.folder, part, kept.facts["context"]), kept.folder / part / schema.DIGESTS
-            if not tables.exists() or read_object(tables, records=str)["records"] != schema.digest_of(there):
-                yield f"{kept.folder / part}: its tables are not those of its records: run study/figures {kept.folder}"
+            schema.records_of(kept.folder, part, kept.facts["context"], drawn=True)
         except StudyError as error:
             yield str(error)
 

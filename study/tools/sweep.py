@@ -67,7 +67,6 @@ def sweep(arguments):
     style.save(figure, name)
     failed = int((~table["finished"]).sum())
     print(f"{name}: {result} of {len(table)} lanes" + (f", {failed} of them failed" if failed else ""))
-    return 0
 
 
 def read(path, of):

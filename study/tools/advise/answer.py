@@ -11,8 +11,8 @@ from study.tools.advise.timing import in_time
 from study.tools.advise.verify import expected_error
 
 MOST_REASONS = 3  # of pilots that were lost
-MOST_REFUSED = 5  # lines of settings that would be faster
 BUSY = 0.05       # share of the time of runs in which other programs had the processor, from which it is said
+SHOWN = {"number": number, "in_time": in_time, "good": GOOD, "most_refused": 5}  # lines of settings that would be faster
 
 
 def as_json(advice, run, folder):
@@ -115,24 +115,4 @@ def _why_not(advice):
 
 
 def text(answer):
-    return layout(Path(__file__).with_name("answer.txt.j2")).render(
-        answer, number=number, spread=_spread, error=_error, ends_as=_ends_as, in_time=in_time, most_refused=MOST_REFUSED)
-
-
-def _spread(value, interval, unit, scale=1.0):
-    return f"{number(scale * value)} {unit} ({number(scale * interval['low'])} to {number(scale * interval['high'])})"
-
-
-def _error(error):
-    """The error against the exact motion decides where that is known: it may be met where the estimate is not."""
-    estimate = _spread(error["estimate"], error, "m")
-    return estimate if error["exact"] is None else f"{number(error['exact'])} m, from the exact motion; by half the step {estimate}"
-
-
-def _ends_as(told):
-    """How the advised line ends, and why that is no objection."""
-    lines = [told["status"]] if told["status"] in GOOD else [f"{told['status']}: {told['status_reason']}"]
-    lines += [f"warning: {warning}" for warning in told["warnings"]]
-    return lines if told["status"] in GOOD and len(lines) == 1 else [
-        *lines, "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
-        f"{number(told['error']['high'])} m at most"]
+    return layout(Path(__file__).with_name("answer.txt.j2")).render(answer, **SHOWN)

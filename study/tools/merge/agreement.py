@@ -166,7 +166,7 @@ def sure(agreed):
     """The questions whose "decided" or "differs" stays where all cells of a layer are asked at once [Holm]."""
     found = [{"question": one.question, "chance": one.chance(verdict), "decided": one.verdict == verdict, "asked": (verdict, one.question.layer)}
              for verdict in LEFT for one in agreed]
-    return {row["question"] for rows in gather((row["asked"], row) for row in found).values() for row in holm(rows) if row.get("holm")}
+    return {row["question"] for row in holm(found, "asked") if row.get("holm")}
 
 
 def components(agreed, machines):

@@ -1,5 +1,6 @@
 # study/merge SET SET …: which winners and equivalence sets hold on all machines, which depend on the processor.
 import base64
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas
@@ -10,10 +11,12 @@ from analysis.core.files import ROOT, StudyError, write_text
 from analysis.core.registry import ANCHOR
 from analysis.core.site import template
 from analysis.core.style import Look, number_axis, save
+from analysis.core.text import layout
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 from study.tools.merge import agreement, machine
 
+HERE = Path(__file__).parent
 ORDER = {"differs": 0, "open": 1, "several": 2, "decided": 3}  # of rows: what a reader looks for comes first
 
 
@@ -49,28 +52,19 @@ def merge(arguments):
     table = pandas.DataFrame(row(one, machines) | {"sure": one.question in sure} for one in agreed)
     counts = {layer: {verdict: (int((rows.verdict == verdict).sum()), int(rows.sure[rows.verdict == verdict].sum())) for verdict in ORDER}
               for layer, rows in table.groupby("layer", sort=False)}
-    found = agreement.held(agreed, fresh) if fresh else {}
     options.to.mkdir(parents=True, exist_ok=True)
     write_text(options.to / "agreement.csv", table.to_csv(index=False))
     libraries = agreement.mechanisms(sets, agreed)
     about = [{"label": label, "facts": one.facts, "rates": machine.rates(one), "controls": machine.controls(one)} for label, one in zip(machines, sets)]
-    write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
-        machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
+    known = {"counts": counts, "layers": agreement.LAYERS, "held": agreement.held(agreed, fresh) if fresh else {},
+             "spread": {agreement.SOURCES[source]: one for source, one in spread.items()}}
+    write_text(options.to / "index.html", template(HERE / "page.html.j2").render(
+        known, machines=about, alone=alone, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR, day="day" in spread,
-        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(libraries),
-        claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
-    for layer, count in counts.items():
-        (differ, sure_differ), (open_, _), (several, _), (decided, sure_decided) = (count[verdict] for verdict in ORDER)
-        print(f"{agreement.LAYERS[layer]}: {differ + open_ + several + decided} common cells, {decided} with one contender among the best everywhere "
-              f"({sure_decided} by Holm), {several} with several, {differ} differ by machine ({sure_differ} by Holm), {open_} open")
-        print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
-    for source, (percent, cells) in spread.items():
-        print(f"{agreement.SOURCES[source]} alone make {percent:.2f} % of a ratio (standard deviation, {cells} cells)")
-    for layer, (cells, inner) in found.items():
-        print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
-    print(f"page: {options.to / 'index.html'}")
-    return 0
+        mechanisms=agreement.shares(libraries), claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
+    said = {layer: [*_said([one for one in agreed if one.question.layer == layer], machines)] for layer in counts}
+    print(layout(HERE / "said.txt.j2").render(known, said=said, page=options.to / "index.html"))
 
 
 def _drawn(libraries, sets, path):

@@ -24,21 +24,28 @@ Claim = namedtuple("Claim", "name text part where found merged", defaults=(False
 
 
 def claims():
-    return (Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", _agree),
-        Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", _sparse),
+    return (Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", lambda known: _counted(
+            known.tables("families")["scenes"].loc[lambda rows: (rows.status == "ok") & rows.to_rival.notna()].verdict == "agrees",
+            eq, "{count} of {total} agree")),
+        Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", lambda known: _counted(
+            ~real_mechanisms(known).winner.isin(known.registry.dense), lambda count, total: 2 * count > total,
+            "more than half; here {count} of {total}")),
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
         Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
         Claim("filled", "Once assembly is sparse, most of a step with dense Cholesky is its factorization in filled cells, too",
               "map", "fill", _filled),
-        Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", _compared, True),
+        Claim("compared", "Sets of several processors are stored, of one commit and build", "families", "machines", lambda known: (
+            True if known.compared else None, f"two or more; here {', '.join(one.folder.name for one in known.compared) or 'one'}"), True),
         Claim("machines", "On nine of ten mechanisms one library is fastest, or not shown to be over 5 % slower, on every processor compared",
               "families", "machines", _machines, True),
         Claim("vector", "On processors whose widest vectors do more, dense kernels gain more than code that works number by number",
               "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out, on each machine", "families", "price", _rule),
-        Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
+        Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", lambda known: _counted(
+            known.tables("stability")["maps"].loc[lambda rows: (rows.penalty_asked == "auto") & (rows.precision == "double")
+                                                  & (rows.status != "dropped")].status == "ok", eq, "all; here {count} of {total}")),
         Claim("cautious", "The estimated lower end is cautious: somewhere a smaller factor is ok as well", "stability", "window", _cautious),
         Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window",
               _of_2008(lambda one: PAPER_PENALTY < one.lower, "the window begins above {factor}; here at {lower}")),
@@ -55,16 +62,6 @@ def _counted(good, wanted, text):
     """(whether as many rows are good as is wanted, None without rows; the text with both numbers)"""
     count, total = int(good.sum()), len(good)
     return (wanted(count, total) if total else None), text.format(count=count, total=total)
-
-
-def _agree(known):
-    rows = known.tables("families")["scenes"]
-    return _counted(rows[(rows.status == "ok") & rows.to_rival.notna()].verdict == "agrees", eq, "{count} of {total} agree")
-
-
-def _sparse(known):
-    sparse = ~real_mechanisms(known).winner.isin(known.registry.dense)
-    return _counted(sparse, lambda count, total: 2 * count > total, "more than half; here {count} of {total}")
 
 
 def extreme(ratios, most=False):
@@ -110,10 +107,6 @@ def _filled(known):
     return (bool((shares > 0.5).all()) if len(shares) else None), f"more than half; here {percent(shares.min())} or more" if len(shares) else ""
 
 
-def _compared(known):
-    return (True if known.compared else None), f"two or more; here {', '.join(one.folder.name for one in known.compared) or 'one'}"
-
-
 def _machines(known):
     count = agreement.shares(agreement.mechanisms(known.compared, known.agreed))
     kept = count["same"] + count["common"]
@@ -141,12 +134,6 @@ def _rule(known):
         said = " and ".join(f"{percent(one['mean_loss'])}, {percent(one['worst_loss'])}, {percent(one['within'])}" for one in found)
         return kept, f"mean loss at most {percent(bounds.MEAN)}, worst {percent(rule.MUCH)}, {percent(bounds.SHARE)} of the times; here {said}"
     return None, ""
-
-
-def _automatic(known):
-    rows = known.tables("stability")["maps"].loc[
-        lambda rows: (rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
-    return _counted(rows.status == "ok", eq, "all; here {count} of {total}")
 
 
 def _of_2008(holds, text):

@@ -7,15 +7,16 @@ import numpy
 import pandas
 from scipy.stats import gmean
 
-from analysis.accuracy import sentences as accuracy
+from analysis.accuracy import page as accuracy
 from analysis.core import timing
 from analysis.core.text import number, span
-from analysis.engines.sentences import compared, medians
-from analysis.extremes import sentences as extremes
+from analysis.engines.equal_error import compared
+from analysis.engines.page import medians
+from analysis.extremes import page as extremes
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
-from analysis.map import carry, ledger, sentences as map_sentences, summary
-from analysis.realtime import sentences as realtime
+from analysis.map import carry, ledger, page as map_page, summary
+from analysis.realtime import page as realtime
 from study.core import profile as profiles
 from study.tools.merge import agreement, machine
 
@@ -69,7 +70,7 @@ def listed(names):
 
 def real_mechanisms(known):
     """Rows of the winners among libraries on mechanisms at their own fill, in the form that each is simulated in."""
-    rows = best_form(known.tables("families")["winners"], "libraries")
+    rows = best_form(known.tables("families")["winners"])
     return rows[~rows.family.str.contains("filled")]
 
 
@@ -191,7 +192,7 @@ def shares(counts):
 def _size(known):
     rows = known.tables("map")["cells"].loc[lambda rows: (rows.layer == "libraries") & rows.fill_asked.isna()]
     groups = summary.by_size(known.results, known.results.layer("libraries"))
-    return each("map/cells", rows, outcome=" ".join(map_sentences.by_outcome(groups)), least=number(rows.variables.min(), 5),
+    return each("map/cells", rows, outcome=" ".join(map_page.by_outcome(groups)), least=number(rows.variables.min(), 5),
                 most=number(rows.variables.max(), 5))
 
 

@@ -13,7 +13,7 @@ from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
 from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
-from analysis.families.sentences import cases
+from analysis.families.page import cases
 from analysis.map import ledger, summary
 from study.tools.merge import machine
 from study.tools.paper.numbers import GAINED, led, losses, real, real_mechanisms
@@ -196,7 +196,7 @@ def mechanisms(known):
     tables_, own = known.tables("families"), fastest_own(known.tables("families")["scenes"], known.registry).set_index("scene")
     about = tables_["mechanisms"].set_index("scene")
     rows = []
-    for row in best_form(tables_["winners"], "libraries").sort_values("variables").itertuples():
+    for row in best_form(tables_["winners"]).sort_values("variables").itertuples():
         others = [name for name in row.equivalent.split() if name != row.winner]
         mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
         rows.append((row.scene, row.scheme.partition("-")[0], number(row.variables, 5), number(about.per_column.get(row.scene, math.nan), 2),

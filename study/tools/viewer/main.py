@@ -47,7 +47,6 @@ def view(arguments):
     for name, content in ((options.output, html), *([(options.png, png)] if png else [])):
         write(name, lambda partial, content=content: partial.write_bytes(content))
         print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
-    return 0
 
 
 def _options(arguments):

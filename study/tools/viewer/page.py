@@ -36,7 +36,8 @@ def _text(name):
 
 def _data(scene, motion, moving, up):
     low, high = bounds(scene, motion)
-    bodies = [{"name": body.name, "points": body.points, "faces": triangles} for body, triangles in zip(scene.bodies, faces(scene, motion))]
+    bodies = [{"name": body.name, "points": body.points, "faces": faces(motion.positions[0], body.points) if scene.dimension == 3 else []}
+              for body in scene.bodies]
     return {
         "dimension": scene.dimension, "up": up, "times": _rounded(motion.times, 9),
         "points": [{"name": name, "kind": kind, "start": _rounded(at, 9)} for (name, kind), at in zip(scene.points, motion.positions[0])],
@@ -88,13 +89,9 @@ def typical_length(scene, motion):
     return float(numpy.median(lengths)) if lengths else 0.1 * reach(scene, motion)
 
 
-def faces(scene, motion):
-    """For each body the triangles of its points' hull, triples of points counter-clockwise seen from outside; none
-    in the plane and where the hull is flat. A body is rigid: those of the start are those of all instants."""
-    return [_hull(motion.positions[0], body.points) if scene.dimension == 3 else [] for body in scene.bodies]
-
-
-def _hull(at, points):
+def faces(at, points):
+    """The triangles of the hull of a body's points in space, triples of points counter-clockwise seen from outside; none where the hull is flat.
+    A body is rigid: those of the start are those of all instants. `at`: where all points are then."""
     places = numpy.array(points)[numpy.unique(at[points].round(12), axis=0, return_index=True)[1]] if points else []
     if len(places) < 4:
         return []
