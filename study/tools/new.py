@@ -57,18 +57,14 @@ def new(arguments):
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    commands = {"study/setup": "if it has not run yet: installs what is missing, builds all",
-                "cmake --build build --target mbs": "after each function",
+    commands = {"cmake --build build --target mbs": "after each function",
                 f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
-                "build/mbs reference four-bar:1 --moved": "the reference's numbers",
-                f"build/mbs check --implementation {options.name}": "the whole gate",
-                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees",
-                f"study/add {options.name}": "beside the leaders, once study/run --part map has run on this machine"}
+                f"study/add {options.name}": "once the ladder ends: beside the leaders"}
     print(f"implementations/{options.name}/ is written and in the list. Next:")
     for command, what in commands.items():
         print(f"  {command:{max(map(len, commands)) + 2}}# {what}")
     print("""The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
-bottom, and climb the ladder after each function. CONTRIBUTING.md has the tests, and what a pull request shows.""")
+bottom, and climb the ladder after each function. CONTRIBUTING.md has what comes before and between: set-up, the gate, tests.""")
     return 0
 
 
