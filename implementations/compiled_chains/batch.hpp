@@ -30,7 +30,9 @@ inline bool any(const WideMask& mask) {
   return bits != 0;
 }
 
-/// What the batches of all schemes have in common. A lane without a chain is at rest.
+/// What the batches of all schemes have in common. A lane without a chain is at rest. Five chains
+/// in registers of eight doubles are two groups with kChains = 4: in the second one lanes 0 and 1,
+/// the two ends of the fifth chain, have running_ = −1, all others 0.
 template <class Store>
 class LaneGroup {
  public:

@@ -7,7 +7,9 @@
 
 namespace mbs::compiled_chains {
 
-/// What an eliminated block leaves to the next one inwards.
+/// What an eliminated block leaves to the next one inwards. A = I and e = (0, 1), without C, give S
+/// = diag(1, 2), σ = 2 and update = diag(0, 1): the next A gains diag(0, ½). As G = diag(0, −½), a
+/// right-hand side (0, 4) leaves force = (0, 2).
 template <class V>
 struct Carry {
   Sym<V> update{};  // σ (e eᵀ − Oᵀ S⁻¹ O)

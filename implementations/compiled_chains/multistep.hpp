@@ -20,7 +20,8 @@ inline constexpr std::array<double, kPast> kVelocity = {475.0 / 288.0, -247.0 / 
                                                         -58.0 / 45.0, 367.0 / 1440.0};
 
 /// A step and the acceleration that it began with: what half a pass's x and a whole one is taken
-/// from.
+/// from. Of a point that moves by a metre along x in every step all five moments are {(ℓ, 0), (0,
+/// 0)}, and predict() finds the same again.
 template <class V>
 struct Moment {
   Vec<V> step;  // s w
@@ -58,7 +59,7 @@ struct Slots {
         fifth(ring.now()) {}
 };
 
-/// Of a point: q_n, the predicted q' and a.
+/// Of a point: q_n, the predicted q' and a. Of that one at (0, −ℓ): (0, −ℓ), (ℓ, −ℓ) and (0, 0).
 template <class V>
 struct Predicted {
   Vec<V> from, to, pull;

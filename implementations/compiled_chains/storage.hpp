@@ -81,6 +81,8 @@ struct AtMostRods {
   using Length = AnyLength<V>;
 };
 
+/// P of the example of Topology: rods[0] and link are {all bits, (0, 0), ℓ²}, mass is {1, 0, 0},
+/// force (0, −9.81) times Units::force. Of Q, the last block, both distances are zeros.
 template <class V, class Mass, class Rods>
 struct Constants {
   typename Rods::template Length<V> rods[Rods::kMost];
@@ -89,7 +91,8 @@ struct Constants {
   Vec<V> force;
 };
 
-/// Factors between the model's units and those of the chain.
+/// Factors between the model's units and those of the chain. With α = 10⁶, Δt = 10⁻³ and a coupling
+/// of ¼ kg: mass 4, length 2, velocity 2 · 10⁻³, acceleration 10⁻⁶, multiplier and force 4 · 10⁻⁶.
 struct Units {
   double mass, length, velocity, acceleration, multiplier, force;
 

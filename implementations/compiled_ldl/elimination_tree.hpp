@@ -26,7 +26,9 @@ Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vec
                int width, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Cycles in which a front keeps the processor busy, and those in which what depends on it waits
-/// while fronts next to it that do not may go on.
+/// while fronts next to it that do not may go on. Three of {10, 5}, each waiting for the one
+/// before, take 45. If the second does not wait for the first, and the third waits for both, they
+/// take 40.
 struct FrontTime {
   double work = 0.0, latency = 0.0;
 };

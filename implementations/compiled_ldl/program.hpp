@@ -10,7 +10,10 @@ inline constexpr int kPanel = 8;
 
 inline int round_up(int x, int unit) { return (x + unit - 1) / unit * unit; }
 
-/// What couples with what. A node is a point (all its coordinates) or a multiplier (one row).
+/// What couples with what. A node is a point (all its coordinates) or a multiplier (one row). Three
+/// planar points of 1 kg in a row with rods 0 - 1 and 1 - 2: cliques are {0, 0}, {0, 0}, {1, 1}, …
+/// of the entries of M, constant = 6, then {0, 1} and {1, 2}. In the saddle-point forms these two
+/// are the borders of the multipliers, and solved = {0, 2}: no other row has these points.
 struct Pattern {
   int dimension = 2;
   int points = 0;                         ///< nodes 0 … points - 1
@@ -89,7 +92,8 @@ struct Program {
 };
 
 /// What changes of a matrix [A Bᵀ; B −ε]: rows of B are Σ n_i e_i with n_i that change and e_i that
-/// do not.
+/// do not. Planar rods have n = u: numbers = 2. With masses at points alone axes are alike, and an
+/// entry is K (n_k · n_l), three products; else K is a 2 × 2 matrix, and it takes six.
 struct Changing {
   int numbers = 0;          ///< n_i of a row, at most; 0: A changes too
   bool axes_alike = false;  ///< A is one matrix for each axis of space, and so is B for given n_i
@@ -106,7 +110,8 @@ struct Changing {
 Program compile(const Pattern& pattern, int width, const Changing& changing = {});
 
 /// What chooses the kernel of a front: the pivots of its last panel, the lanes of vectors for rows
-/// below, 0: none, and whether there are panels before that one.
+/// below, 0: none, and whether there are panels before that one. Of four pivots with a border of
+/// three {4, 4}, without one {4, 0}; of 19 pivots, 8 + 8 + 3, {3, 8, true}.
 struct FrontShape {
   int pivots = 0, lanes = 0;
   bool wide = false;

@@ -23,7 +23,8 @@ def repository(tmp_path, monkeypatch):
 def test_what_it_writes_compiles_without_a_warning(repository, library, capsys):
     new.new(["my_first", "--library", library])
     said = capsys.readouterr().out
-    assert "mbs bench" in said and "study/add my_first" in said
+    commands = [line.split("#")[0].split() for line in said.splitlines() if line.startswith("  ")]
+    assert [words[0] for words in commands] == ["cmake", "build/mbs", "study/add"] and "CONTRIBUTING.md" in said
     folder = repository / "my_first"
     assert sorted(path.name for path in folder.iterdir()) == [
         "CMakeLists.txt", "README.md", "implementation.cpp", "simulation.cpp", "simulation.hpp"]

@@ -7,7 +7,8 @@ namespace mbs::compiled_ldl {
 
 /// y += s A x. Columns lie `stride` apart and are zero below the last row, up to a multiple of
 /// eight rows. Eight columns at a time are read once for what they add below and, transposed, to
-/// their own rows.
+/// their own rows. A = [2 1; 1 3] is (2 1) and (· 3). With s = 1 and x = (1 2) its first column
+/// adds 2 · 1 and 1 · 2 to y_0 and 1 · 1 to y_1, its second one 3 · 2 to y_1: (4 7).
 template <typename F>
 void add_symmetric_product(const F* a, int stride, int size, F s, const F* x, F* y) {
   constexpr int L = kWidest<F>, N = 8;

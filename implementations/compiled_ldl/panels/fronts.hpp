@@ -10,7 +10,9 @@
 
 namespace mbs::compiled_ldl {
 
-/// Columns keep L D below their pivot: L is that times the inverse pivot.
+/// Columns keep L D below their pivot: L is that times the inverse pivot. The columns of the
+/// example of Panels, (4 2 | 2) and (· 5 | 9), become (4 2 | 2) and (· 4 | 8), with inverse_ = (¼,
+/// ¼). Row and column behind lose 17, and y = (4 6 | 0) becomes (4 4 | −10).
 template <typename F>
 class Fronts {
  public:

@@ -5,6 +5,8 @@
 
 namespace mbs::compiled_ldl {
 
+/// Point 3 is driven, and so is the length of a rod, constraint 0. In the plane with N = 6, kSize =
+/// 8, q has the point in places 14 and 15; rates_ = {ṡ, 0, …}.
 template <int N, int D>
 class SmallDrivers {
  public:

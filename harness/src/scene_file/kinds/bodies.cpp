@@ -95,17 +95,6 @@ class BodyLowering {
     }
   }
 
-  /// A force on a point of the body that is no coordinate.
-  void push(std::size_t item, const DraftForce& force) const {
-    const BodyMass::Weights weights = algebra_.weights(place(item));
-    for (std::size_t k = 0; k < body_.basis.size(); ++k) {
-      const Matrix3 block = block_of(weights[k], draft_.dimension);
-      const int at = point(body_.basis[k]).index;
-      scene_.mass().push(at, multiply_transposed(block, force.force));
-      if (force.pusher >= 0) scene_.mass().add(at, force.pusher, transposed(block));
-    }
-  }
-
  private:
   using Edge = RowWriter::Edge;
   using Part = RowWriter::Part;
@@ -337,23 +326,9 @@ void lower_bodies(Lowering& scene) {
   std::stable_sort(order.begin(), order.end(), [&](int x, int y) {
     return scene.draft().body(x).further.size() > scene.draft().body(y).further.size();
   });
-  std::vector<std::vector<const DraftForce*>> forces(scene.draft().bodies.size());
-  for (const DraftForce& force : scene.draft().forces) {
-    const DraftPoint& at = scene.draft().point(force.point);
-    if (at.index >= 0) {
-      scene.mass().push(at.index, force.force);
-      if (force.pusher >= 0) scene.mass().add(at.index, force.pusher, kIdentity);
-    } else {
-      forces[static_cast<std::size_t>(at.bodies.front())].push_back(&force);
-    }
-  }
   std::vector<bool> is_done(scene.draft().bodies.size(), false);
   for (const int index : order) {
-    BodyLowering body(scene, index, is_done);
-    body.run();
-    for (const DraftForce* force : forces[static_cast<std::size_t>(index)]) {
-      body.push(scene.draft().point(force->point).item, *force);
-    }
+    BodyLowering(scene, index, is_done).run();
     is_done[static_cast<std::size_t>(index)] = true;
   }
 }

@@ -58,6 +58,25 @@ void read_force(SceneReader& reader, const JsonNode& node) {
   reader.draft().forces.push_back(std::move(force));
 }
 
+/// At a point, or at those of its body that have coordinates.
+void lower_forces(Lowering& scene) {
+  for (const DraftForce& force : scene.draft().forces) {
+    const auto push = [&](int point, const Matrix3& weight) {
+      scene.mass().push(point, multiply_transposed(weight, force.force));
+      if (force.pusher >= 0) scene.mass().add(point, force.pusher, transposed(weight));
+    };
+    const DraftPoint& at = scene.draft().point(force.point);
+    if (at.index >= 0) {
+      push(at.index, kIdentity);
+    } else {
+      const auto marker = static_cast<std::size_t>(at.marker);
+      for (const Marker::Part& part : scene.elements().markers[marker].parts) {
+        push(part.point, part.matrix);
+      }
+    }
+  }
+}
+
 void read_torque(SceneReader& reader, const JsonNode& node) {
   node.allow_keys({"name", "direction", "body", "axis", "torque"});
   DraftTorque torque{node, reader.element_name(node)};

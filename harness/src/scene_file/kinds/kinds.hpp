@@ -16,7 +16,7 @@ struct ListKind {
   const char* schema;     ///< what an item is, in "$defs" of harness/scenes/scene.schema.json
   bool is_named = false;  ///< items of other lists name its items: it is read before them
   void (*read)(SceneReader& reader, const JsonNode& item) = nullptr;  ///< into the draft
-  /// All items of the draft; null: with those of another list.
+  /// All items of the draft; null: Lowering::run() does it.
   void (*lower)(Lowering& lowering) = nullptr;
 };
 
