@@ -29,7 +29,8 @@ def draw(tables, view):
     many = profiled[profiled.implementation.isin(names)].groupby("loops").size() > len(names) / 3
     sizes = sorted(many.index[many])
     shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
-    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(profiled, names, shown),
+    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own),
+            "by_phase": by_phase({f"N-four-bar, n = {2 * loops + 2:.0f}": profiled[profiled.loops == loops] for loops in shown}, names),
             "ahead": ahead(tables["leads"])}
 
 
@@ -81,24 +82,26 @@ def over_size(bounds, rows, look, own):
     return figure
 
 
-def by_phase(rows, names, sizes):
-    """A panel a size: the share of each phase in a step of each of `names`, beside the step in multiples of the limit code."""
-    if not sizes:
+def by_phase(shown, names):
+    """A panel for the rows under each title: the share of each phase in a step of each of `names`, beside the step, in multiples of the limit code, too,
+    where these are known."""
+    if not shown:
         return nothing("no phases were timed")
-    figure, grid = panels(len(sizes), len(sizes), 3.9, 0.36 * len(names) + 0.6, "What a step consists of: libraries and code of our own")
-    for axes, loops in zip(grid, sizes):
-        of_size = rows[rows.loops == loops].set_index("implementation")
+    figure, grid = panels(len(shown), len(shown), 3.9, 0.36 * len(names) + 0.6, "What a step consists of: libraries and code of our own")
+    for axes, (title, rows) in zip(grid, shown.items()):
+        rows = rows.set_index("implementation")
         for place, name in enumerate(names):
-            row = of_size.loc[name] if name in of_size.index else None
+            row = rows.loc[name] if name in rows.index else None
             if row is None or row.other_us > WHOLE * row.step_us:
                 axes.text(2, place, "not timed" if row is None else "all in the same sweeps", va="center", fontsize=8)
             else:
                 _bar(axes, place, row)
             if row is not None:
-                axes.text(100, place, f" {number(row.multiple)}× limit, {number(row.step_us)} µs", va="center", fontsize=8)
-        axes.set(xlim=(0, 165), xticks=[0, 50, 100], xlabel="share of the step, %", title=f"N-four-bar, n = {2 * loops + 2:.0f}")
+                multiple = f"{number(row.multiple)}× limit, " if row.get("multiple", 0) > 0 else ""
+                axes.text(100, place, f" {multiple}{number(row.step_us)} µs", va="center", fontsize=8)
+        axes.set(xlim=(0, 165), xticks=[0, 50, 100], xlabel="share of the step, %", title=title)
         line_each(axes, names)
-    below(figure, len(PHASES) if len(sizes) > 1 else 3, [
+    below(figure, len(PHASES) if len(shown) > 1 else 3, [
         Patch(facecolor=colour, hatch=hatch, **EDGE, label=words) for colour, hatch, words in PHASES.values()])
     return figure
 

@@ -237,7 +237,7 @@ def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
 
 def test_phases_that_do_not_exist_are_said_in_words():
     rows = figures.everyone(made(*(bench("size", "four-bar:10", number, limit_limit=1.0, one_a=3.0, own_y=1.2) for number in (1, 2)))["steps"])
-    figure = figures.by_phase(rows, figures.leaders(rows, {"own"}), [10])
+    figure = figures.by_phase({"n = 22": rows}, figures.leaders(rows, {"own"}))
     assert [text.get_text() for text in figure.axes[0].texts].count("all in the same sweeps") == 1
     assert len(figure.axes[0].patches) == len(PHASES)  # of one/a
     plt.close(figure)

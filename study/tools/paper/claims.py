@@ -13,7 +13,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, GAINED, HYBRID, SCALAR, losses, percent, phases, profiled, real_mechanisms
+from study.tools.paper.numbers import DENSE, GAINED, HYBRID, SCALAR, filled_by_phase, losses, percent, phases, profiled, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -102,9 +102,9 @@ def _phases(known):
 
 
 def _filled(known):
-    rows = known.tables("map")["tidy"].loc[lambda rows: (rows.kind == "phases") & (rows.status == "ok") & rows.fill_asked.notna()]
-    shares = rows[rows.implementation == HYBRID].groupby("scene").phase_factorization.median()
-    return (bool((shares > 0.5).all()) if len(shares) else None), f"more than half; here {percent(shares.min())} or more" if len(shares) else ""
+    rows = filled_by_phase(known).loc[lambda rows: rows.implementation == HYBRID]
+    shares = [phases(row)["factorization"] for _, row in rows.iterrows()]
+    return (min(shares) > 0.5, f"more than half; here {percent(min(shares))} or more") if shares else (None, "")
 
 
 def _machines(known):

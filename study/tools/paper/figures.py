@@ -14,7 +14,7 @@ from analysis.limit import figures as limit
 from analysis.map import figures as maps
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
-from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
+from study.tools.paper.numbers import DENSE, HYBRID, filled_by_phase, led, profiled, real_mechanisms
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
@@ -108,12 +108,16 @@ def below(figure, legend, columns, y=-0.03, size=9):
 
 
 def phases(known):
-    """What a step of some variants consists of, at the largest size that was timed phase by phase."""
-    rows = profiled(known)
-    names = [name for name in PHASES_OF if name in set(rows.implementation)]
-    figure = limit.by_phase(rows, names, sorted(set(rows.loops)))
+    """What a step of some variants consists of: at the own fill, and at the first fills beyond it, each at the largest size that was timed phase by
+    phase."""
+    own, rows = profiled(known), filled_by_phase(known)
+    shown = {f"n = {size:.0f}, own fill": own for size in own.variables.unique()}
+    for fill, mine in list(rows[rows.variables == rows.variables.max()].groupby("fill_asked"))[:2]:
+        shown[f"n = {mine.variables.iloc[0]:.0f}, {100 * fill:.0f} % filled"] = mine
+    names = [name for name in PHASES_OF if any(name in set(mine.implementation) for mine in shown.values())]
+    figure = limit.by_phase(shown, names)
     for axes in figure.axes:
-        axes.set_xlim(0, 130)
+        axes.set_xlim(0, 160 if len(shown) > 1 else 130)
     return figure
 
 

@@ -222,6 +222,14 @@ def profiled(known):
     return rows[rows.variables == max(sizes)] if sizes else rows[:0]
 
 
+def filled_by_phase(known):
+    """Medians of the steps of filled four-bars that were timed phase by phase: a row a scene and implementation, times in µs."""
+    rows = known.tables("map")["tidy"].loc[lambda rows: (rows.kind == "phases") & (rows.status == "ok") & rows.fill_asked.notna()]
+    times = {f"{phase}_us": rows[f"phase_{phase}"] * rows.step_us for phase in timing.PHASES}
+    by = ["scene", "variables", "fill_asked", "implementation"]
+    return rows.assign(**times).groupby(by, as_index=False)[["step_us", *times]].median()
+
+
 def phases(row):
     """{phase: share of the step}"""
     times = {phase: row[f"{phase}_us"] for phase in timing.PHASES}
