@@ -227,6 +227,34 @@ TEST(LocalErrors, AddUpAlongTheWay) {
   EXPECT_LT(speeds.worst().sum, 6e-4 + 2.0 * 1e-3 * 1000 + 1e-12);
 }
 
+TEST(LocalErrors, ALagIsATime) {
+  const Scene scene = shipped("pendulum.json");
+  const std::vector<double> slow{0.1, 0.0}, fast{2.0, 0.0}, none{0.0, 0.0};
+  LocalErrors lags(scene, 1.0, {false, false});
+  lags.add(std::vector{1e-6, 0.0}, slow, 1e-3, 100);  // 1e-3 s late
+  EXPECT_NEAR(lags.worst().sum, 1e-4, 1e-18);
+  lags.add(none, fast, 1e-3, 1);
+  lags.add(none, slow, 1e-3, 1);
+  EXPECT_NEAR(lags.worst().sum, 2e-3, 1e-17);
+}
+
+TEST(LocalErrors, OfAMotionThatExcitesItselfGrowWithIt) {
+  // Pushed where it is slow and held back where it is fast, a mass oscillates more and more.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0],
+      "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "P", "position": [1.0001, 0]}],
+      "masses": [{"point": "P", "mass": 1}],
+      "springs": [{"between": ["A", "P"], "stiffness": 39.4784, "length": 1}],
+      "constraints": [{"type": "linear", "terms": [{"point": "P", "axis": "y", "coefficient": 1}]}],
+      "force_laws": [{"between": ["A", "P"], "by_rate": {"rates": [-4, -2, -1, 0, 1, 2, 4],
+                                                         "forces": [-12, 0, 1.2, 0, -1.2, 0, 12]}}]})"),
+                               "test");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 0.01, 16.0);
+  settings.half_step = half_of(scene, settings.step);
+  EXPECT_GT(*run(scene, test::reference(), settings).position_error_estimate, 0.01);
+  settings.half_step.reset();
+  EXPECT_EQ(run(scene, test::reference(), settings).status, RunStatus::degraded);
+}
+
 TEST(LocalErrors, ShiftsOfTheSpeedGoOn) {
   const Scene scene = shipped("pendulum.json");
   const std::vector<double> onward{2.0, 0.0}, off{3e-6, 4e-6}, none{0.0, 0.0};

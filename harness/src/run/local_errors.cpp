@@ -50,6 +50,10 @@ double LocalErrors::add(std::span<const double> off, std::span<const double> v, 
     Sums& sums = *point++;
     const double squared = dot(velocity, velocity);
     fastest = std::max(fastest, squared);
+    if (squared > sums.fastest) {
+      if (sums.fastest > 0.0) sums.lag *= std::sqrt(squared / sums.fastest);
+      sums.fastest = squared;
+    }
     if (sums.passes_on) {  // errors across the way too; a NaN goes on
       const double whole = dot(error, error);
       sums.lag += more * std::sqrt(whole);

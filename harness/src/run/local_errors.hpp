@@ -16,6 +16,7 @@ namespace mbs {
 /// wrong speed goes:
 ///
 ///   lag  = sum of |off . v|/|v|, or of |off| where freedoms pass energy on to each other   m
+///          (a lag is a time: it grows with the largest |v| so far)
 ///   way of shifts = t sqrt(mean of |off/dt|^2), there    m
 ///   gain of v^2/2 by the lesser of now . v and later . v, if their signs agree, m^2/s^2
 ///   way  = sum of dt gain/|v|, at most dt |v|            m
@@ -59,6 +60,7 @@ class LocalErrors {
     double length;  // m
     bool passes_on = false;
     double lag = 0.0, way = 0.0;
+    double fastest = 0.0;                   // |v|^2, m^2/s^2
     double gain = 0.0, gain_squared = 0.0;  // of samples
     double shift = 0.0;                     // sum of dt |off/dt|^2, m^2/s
   };
