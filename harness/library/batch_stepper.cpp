@@ -51,6 +51,7 @@ void BatchStepper::Content::start() {
     }
     lane.state = initial_state(lane.scene.model);
     batch->set_state(static_cast<int>(i), lane.state);
+    lane.follow();
   }
 }
 
@@ -119,9 +120,13 @@ std::span<const StepOutcome> BatchStepper::step() {
     }
     c.lanes[i]->is_current = false;
     if (!c.batch) c.outcomes[i] = c.lanes[i]->simulation->step();
-    if (c.outcomes[i].status != StepStatus::factorization_failed) continue;
-    c.has_failed[i] = true;
-    if (c.batch) c.batch->retire(static_cast<int>(i));
+    if (c.outcomes[i].status == StepStatus::factorization_failed) {
+      c.has_failed[i] = true;
+      if (c.batch) c.batch->retire(static_cast<int>(i));
+    } else if (c.lanes[i]->values.has_angles()) {
+      static_cast<void>(state(static_cast<int>(i)));
+      c.lanes[i]->follow();
+    }
   }
   return c.outcomes;
 }

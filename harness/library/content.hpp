@@ -79,6 +79,8 @@ struct Stepper::Content {
   /// The simulation, at the scene's start. Throws Unsupported.
   void start();
   void set_input(int input, double value, double rate, double acceleration);
+  /// `state`, which must be current, is the next of the motion: for angles, which count turns.
+  void follow() { values.follow(state.t, state); }
   /// Of `state`, which must be current.
   std::span<const double> outputs();
 

@@ -121,10 +121,11 @@ void Stepper::Content::start() {
   }
   state = initial_state(scene.model);
   simulation->set_state(state);
+  follow();
 }
 
 std::span<const double> Stepper::Content::outputs() {
-  values.follow(state.t, state);
+  follow();
   values.values(numbers);
   return numbers;
 }
@@ -158,7 +159,12 @@ void Stepper::set_input(int input, double value, double rate, double acceleratio
 
 StepOutcome Stepper::step() {
   content_->is_current = false;
-  return content_->simulation->step();
+  const StepOutcome outcome = content_->simulation->step();
+  if (content_->values.has_angles() && outcome.status != StepStatus::factorization_failed) {
+    static_cast<void>(state());
+    content_->follow();
+  }
+  return outcome;
 }
 
 StepOutcome Stepper::step(long steps) {

@@ -36,8 +36,10 @@ void print_verdict(const Verdict& verdict) {
   fmt::print("{:<24} {:<24} {}{}{}\n", verdict.scene, verdict.implementation, verdict.verdict,
              verdict.reason.empty() ? "" : ": ", verdict.reason);
   for (const Check& check : verdict.checks) {
-    const char* mark = !check.passed ? "not run" : *check.passed ? "passed" : "FAILED";
-    fmt::print("  {:<18} {:<8} ", check.name, mark);
+    const char* mark = !check.passed   ? (check.value ? "not judged" : "not run")
+                       : *check.passed ? "passed"
+                                       : "FAILED";
+    fmt::print("  {:<18} {:<10} ", check.name, mark);
     if (check.value && check.tolerance) {
       fmt::print("{:.3g} (allowed {:.3g}) ", *check.value, *check.tolerance);
     }
@@ -87,13 +89,15 @@ void write_rows(AtomicFile& file, const std::vector<Row>& rows) {
 int climb_all(const std::vector<NamedVariant>& variants, double seconds,
               std::optional<AtomicFile>& file) {
   std::vector<RungReport> reports;
-  bool any_failed = false;
+  bool all_right = true;
   for (const NamedVariant& variant : variants) {
     fmt::print("{}\n", variant.name);
     std::map<RungResult, int> counts;
     std::vector<std::string> not_served;
+    std::string why;  // the first was not
     climb(variant, {.seconds = seconds}, [&](const RungReport& report) {
       if (report.result == RungResult::not_served) {
+        if (not_served.empty()) why = report.detail;
         not_served.push_back(report.rung);
       } else {
         print_rung(report);
@@ -102,18 +106,26 @@ int climb_all(const std::vector<NamedVariant>& variants, double seconds,
       reports.push_back(report);
     });
     const bool failed = counts[RungResult::failed] > 0;
+    const bool is_open = counts[RungResult::ok] + counts[RungResult::failed] == 0;
     if (!not_served.empty()) {
       fmt::print("  not served {}{}\n", not_served.front(),
                  not_served.size() > 1 ? fmt::format(" and {} more (--json FILE names all)", not_served.size() - 1) : "");
     }
     fmt::print("{}: {} rungs ok, {} not yet, {} not served\n",
-               failed ? "stopped at the first rung that failed" : "all that it serves is right",
+               is_open  ? "nothing was checked"
+               : failed ? "stopped at the first rung that failed"
+                        : "all that it serves is right",
                counts[RungResult::ok], counts[RungResult::not_yet], not_served.size());
-    if (!failed) fmt::print("next: build/mbs check --implementation {}\n", variant.name);
-    any_failed |= failed;
+    if (is_open) {
+      fmt::print(stderr, "mbs: {}: nothing was checked: it serves no rung ({})\n", variant.name,
+                 why);
+    } else if (!failed) {
+      fmt::print("next: build/mbs check --implementation {}\n", variant.name);
+    }
+    all_right &= !failed && !is_open;
   }
   if (file) write_rows(*file, reports);
-  return any_failed ? 1 : 0;
+  return all_right ? 0 : 1;
 }
 
 /// Adds the verdicts of all `variants` on `scene`.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "atomic_file.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/sweep_outcomes.hpp"
 #include "mbs/table_file.hpp"
@@ -66,7 +67,7 @@ void require_all_blocks(const Journal& part) {
 void remove_partial(const std::string& path) {
   std::error_code ignored;
   const fs::path table = fs::weakly_canonical(fs::absolute(path), ignored);
-  const std::string begin = table.filename().string() + ".", end = ".partial";
+  const std::string begin = partial_begin(table.filename().string()), end = ".partial";
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(table.parent_path(), ignored)) {
     const std::string name = entry.path().filename().string();

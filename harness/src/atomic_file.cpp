@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -67,8 +68,10 @@ void write_at_end(const std::string& path) {
 
 /// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
 std::string create_beside(const std::string& path) {
+  const std::size_t folder = path.rfind('/') + 1;  // its length
+  const std::string begin = path.substr(0, folder) + partial_begin(path.substr(folder));
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const std::string name = fmt::format("{}.{}-{}.partial", path, ::getpid(), attempt);
+    const std::string name = fmt::format("{}{}-{}.partial", begin, ::getpid(), attempt);
     const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0 && errno == EEXIST) continue;
     if (file < 0) return "";
@@ -79,6 +82,12 @@ std::string create_beside(const std::string& path) {
 }
 
 }  // namespace
+
+std::string partial_begin(const std::string& name) {
+  constexpr std::size_t kMost = 200;
+  if (name.size() <= kMost) return name + '.';
+  return fmt::format("{}-{:x}.", name.substr(0, kMost), std::hash<std::string>{}(name));
+}
 
 bool is_open_already(const std::string& path) {
   return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||

@@ -9,6 +9,10 @@ namespace mbs {
 /// Whether `path` names what is open already: a pipe with both its ends, or a file to be kept.
 bool is_open_already(const std::string& path);
 
+/// What the names of files begin with that are to become the file `name`, in its folder: `name`,
+/// cut where the rest would not go into the 255 bytes that most systems allow.
+std::string partial_begin(const std::string& name);
+
 /// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
 /// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices and what
 /// is open already (/dev/stdout) written to directly. Up to four at a time.

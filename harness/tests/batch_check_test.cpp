@@ -6,7 +6,11 @@
 
 #include "check/batch_checks.hpp"
 #include "check/gate.hpp"
+#include "check/varied_lanes.hpp"
 #include "controls/batches.hpp"
+#include "ladder/term_models.hpp"
+#include "model_math/kinematics.hpp"
+#include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/scene.hpp"
 #include "scene_file/load_scene.hpp"
@@ -65,6 +69,42 @@ TEST(BatchChecks, DefectsAreRejected) {
     EXPECT_EQ(verdict.verdict, expected) << name << ": " << verdict.reason;
     EXPECT_TRUE(std::regex_search(verdict.reason, std::regex(reason)))
         << name << ": " << verdict.reason;
+  }
+}
+
+TermModel everything_in_space() {
+  std::vector<TermModel> models = term_models();
+  return *std::ranges::find(models, "everything and force laws, spatial", &TermModel::name);
+}
+
+TEST(BatchChecks, WhateverIsThatOfLane0IsRejected) {
+  const TermModel term = everything_in_space();
+  const StepSettings settings = term_settings(term.model);
+  const ReferenceRun reference = run_reference({term.name, term.model, {}, {}}, settings, 16);
+  int count = 0;
+  for (const Variant& variant : test::batches()) {
+    const bool is_sound = variant.name == "sound";
+    if (!is_sound && !variant.name.starts_with("mixes")) continue;
+    const auto checks = batch_checks(variant, term.model, settings, reference, 60.0);
+    EXPECT_EQ(checks[0].passed, is_sound) << variant.name << ": " << checks[0].detail;
+    ++count;
+  }
+  EXPECT_EQ(count, 13);
+}
+
+TEST(VaryLanes, StartOnTheirConstraints) {
+  for (const TermModel& term : term_models()) {
+    const StepSettings settings = term_settings(term.model);
+    const VariedLanes lanes = vary_lanes(3, 0.04, term.model, settings, initial_state(term.model));
+    for (int k = 0; k < lanes.count(); ++k) {
+      const Model& model = *lanes.models[static_cast<std::size_t>(k)];
+      const State& start = lanes.starts[static_cast<std::size_t>(k)];
+      std::vector<double> phi(static_cast<std::size_t>(model.constraints())), rate(phi);
+      evaluate_constraints(model, start.t, start.q, phi);
+      constraint_rate(model, start.t, start.q, start.v, rate);
+      for (const double x : phi) EXPECT_NEAR(x, 0.0, 1e-12) << term.name << ", lane " << k;
+      for (const double x : rate) EXPECT_NEAR(x, 0.0, 1e-9) << term.name << ", lane " << k;
+    }
   }
 }
 

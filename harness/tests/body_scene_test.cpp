@@ -154,6 +154,49 @@ TEST(BodyScene, PosesAndVelocitiesSpread) {
   EXPECT_NEAR(data.model.springs[0].length, 1.5, 1e-12);
 }
 
+/// The place of E, of a body whose pose leaves out what its points show.
+std::array<double, 3> place_of_E(const std::string& points, const std::string& pose) {
+  const SceneData data = data_of_text(
+      R"({"points": [{"name": "O", "position": [1, 2], "fixed": true},
+      {"name": "G", "position": [3, 2], "fixed": true})" +
+      points +
+      R"(], "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"O": [0, 0], "B": [2, 0], "E": [1, 1]},
+      "pose": )" +
+      pose + R"(}], "springs": [{"between": ["B", "G"]}, {"between": ["E", "G"]}]})");
+  return point_named(data.model, "E").position;
+}
+
+TEST(BodyScene, PosesTurnAsTheirPointsShow) {
+  const auto expect_at = [](const std::array<double, 3>& place, double x, double y) {
+    EXPECT_NEAR(place[0], x, 1e-12);
+    EXPECT_NEAR(place[1], y, 1e-12);
+  };
+  const std::string up = R"(, {"name": "B", "position": [1, 4]})";
+  for (const char* pose : {"{}", R"({"position": [1, 2]})", R"({"angle": 1.5707963267948966})"}) {
+    expect_at(place_of_E(up, pose), 0.0, 3.0);
+  }
+  for (const char* pose : {"{}", R"({"position": [1, 2]})"})
+    expect_at(place_of_E("", pose), 2.0, 3.0);
+  EXPECT_THROW(place_of_E(up, R"({"angle": 0})"), UsageError);
+}
+
+TEST(BodyScene, BodiesTurnAboutWhatIsHeldOrTheirCentre) {
+  const auto speeds = [](const std::string& point) {
+    return data_of_text(
+               R"({"points": [{"name": "G", "position": [4, 0], "fixed": true}, {"name": "A", "position": [0, 0]})" +
+               point +
+               R"(], "bodies": [{"name": "K", "mass": 1, "inertia": 1, "centre": [1, 0], "points": {"A": [0, 0], "B": [3, 0]},
+        "pose": {}, "angular_velocity": 2}], "springs": [{"between": ["A", "G"]}, {"between": ["B", "G"]}]})")
+        .model.initial_velocity;
+  };
+  const auto expect = [](const std::vector<double>& v, const std::vector<double>& of_A_and_B) {
+    ASSERT_EQ(v.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(v[i], of_A_and_B[i], 1e-12) << i;
+  };
+  expect(speeds(""), {0.0, -2.0, 0.0, 4.0});  // A has a place, but nothing holds it
+  expect(speeds(R"(, {"name": "B", "velocity": [1, 0]})"), {1.0, -6.0, 1.0, 0.0});
+}
+
 TEST(BodyScene, FreedomsOfPlanarJoints) {
   // A body with three points at springs; the ground has G and X, and H where C is.
   const auto with = [](const std::string& constraint) {
@@ -299,7 +342,7 @@ TEST(BodyScene, ConstraintForcesAreFoundByName) {
   const std::vector<Output>& outputs = data.elements.outputs;
   EXPECT_EQ(outputs[0].rows, std::vector<int>{4});
   EXPECT_EQ(outputs[1].rows, std::vector<int>{3});
-  EXPECT_EQ(outputs[2].rows, std::vector<int>{0});
+  EXPECT_EQ(outputs[2].rows, (std::vector<int>{0, 3}));  // what the angle does along it
 }
 
 TEST(BodyScene, FurtherPointsKeepMPositiveDefinite) {

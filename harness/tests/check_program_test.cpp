@@ -193,6 +193,26 @@ TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
   EXPECT_FALSE(fs::exists(file + ".partial"));
 }
 
+TEST(CheckProgram, RefusesBoundsThatNothingExceeds) {
+  const auto run = test::run_program(
+      MBS_CONTROLS,
+      "check four-bar:1 --penalty 1e25 --steps 16 --implementation control/reference");
+  EXPECT_EQ(run.status, 2) << run.output;
+  EXPECT_NE(run.errors.find("nothing can be compared"), std::string::npos) << run.errors;
+}
+
+/// A mass that hangs still: its lambda never moves, nor would that of who forgets it.
+TEST(CheckProgram, MultipliersThatDoNotMoveAreNotJudged) {
+  const test::Folder folder;
+  const std::string scene = folder.file("still.json");
+  std::ofstream(scene)
+      << R"({"masses": [{"point": "B", "mass": 1}], "rods": [{"between": ["A", "B"], "mass": 0}],
+    "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "B", "position": [0, -1]}]})";
+  const auto run = test::run_program(
+      MBS_CONTROLS, "check '" + scene + "' --steps 16 --implementation control/wrong_lambda");
+  EXPECT_NE(run.output.find("multipliers        not judged"), std::string::npos) << run.output;
+}
+
 TEST(CheckProgram, KeepsWhatWasJudgedBeforeASceneThatIsRefused) {
   const test::Folder folder;
   const std::string scene = folder.file("scene.json"), verdicts = folder.file("verdicts.json");

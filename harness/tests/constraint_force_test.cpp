@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "run/output_values.hpp"
 #include "run/rounding.hpp"
 #include "run/run.hpp"
+#include "run/settings.hpp"
 #include "scene/scene.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
@@ -82,6 +84,72 @@ TEST(ConstraintForce, OfAnAngleBetweenMovingLinksIsTheMotorsTorqueToo) {
                      "value": {"polynomial": [0.9272952180016122, 0, 1.5]}}],
     "outputs": [{"name": "M", "constraint_force": "elbow"}]})");
   EXPECT_NEAR(values[0], 3.0, 1e-6);
+}
+
+/// A and B on massless rods, held at 60 degrees by `angle`, turn about O as one at 2 rad/s.
+std::string triangle(bool is_spatial, const std::string& angle) {
+  const auto at = [&](const std::string& plane) {
+    return '[' + plane + (is_spatial ? ", 0]" : "]");
+  };
+  const auto rail = [](const std::string& point) {
+    return R"(, {"type": "linear", "terms": [{"point": ")" + point +
+           R"(", "axis": "z", "coefficient": 1}], "value": 0})";
+  };
+  return std::string(is_spatial ? R"({"dimension": 3, )" : "{") +
+         R"("points": [{"name": "O", "fixed": true, "position": )" + at("0, 0") +
+         R"(}, {"name": "A", "position": )" + at("1, 0") + R"(, "velocity": )" + at("0, 2") +
+         R"(}, {"name": "B", "position": )" + at("1.5, 0.8660254037844386") + R"(}],
+    "rods": [{"name": "OA", "between": ["A", "O"], "mass": 0}, {"name": "AB", "between": ["A", "B"], "mass": 0}],
+    "masses": [{"point": "A", "mass": 1}, {"point": "B", "mass": 2}],
+    "constraints": [{"type": "angle", "first": ["O", "A"], "second": ["A", "B"], "value": )" +
+         angle + "}" + (is_spatial ? rail("A") + rail("B") : "") + R"(],
+    "outputs": [{"name": "1", "constraint_force": "OA"}, {"name": "2", "constraint_force": "AB"}]})";
+}
+
+// An angle's row pulls along its directions too, unless it is a right angle.
+TEST(ConstraintForce, OfARodIsItsWholePullBesideAnAngle) {
+  const double cosine = 0.5, sine = std::sqrt(0.75), spin = 2.0;
+  const double x = 1 + cosine, faster = -9.81 * (1 + 2 * x) / (1 + 2 * (x * x + sine * sine));
+  const double at_a = -spin * spin;  // along x; gravity is not
+  const double at_b_x = -faster * sine - spin * spin * x;
+  const double at_b_y = faster * x - spin * spin * sine + 9.81;
+  const double first = -(at_a + 2 * at_b_x), second = -2 * (cosine * at_b_x + sine * at_b_y);
+  for (const bool is_spatial : {false, true}) {
+    for (const std::string angle :
+         {"1.0471975511965976", R"({"polynomial": [1.0471975511965976, 1e-9]})"}) {
+      SCOPED_TRACE(angle);
+      const std::string text = triangle(is_spatial, angle);
+      const auto values = outputs_at_start(text);
+      EXPECT_NEAR(values[0], first, 1e-6);
+      EXPECT_NEAR(values[1], second, 1e-6);
+      const Scene scene = scene_of(nlohmann::json::parse(text), "test");
+      std::vector<std::vector<double>> ends;
+      for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+        RunSettings settings;
+        settings.step = chosen(scene.model, {.step = 1e-3, .scheme = scheme});
+        settings.duration = 0.5;
+        OutputValues outputs(scene);
+        run(scene, test::reference(), settings, [&](long /*step*/, double t, const State& state) {
+          outputs.follow(t, state);
+          if (t > 0.4999) ends.push_back(outputs.values());
+        });
+      }
+      ASSERT_EQ(ends.size(), 2u);
+      for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-4) << i;
+    }
+  }
+}
+
+TEST(ConstraintForce, OfARodIsItsWholePullBesideAnAngleToAFixedDirection) {
+  // 1 kg goes round at 3 rad/s on a cone of 60 degrees.
+  const auto values = outputs_at_start(R"({"dimension": 3, "gravity": [0, 0, -10], "points": [
+      {"name": "O", "position": [0, 0, 0], "fixed": true},
+      {"name": "B", "position": [0.8660254037844386, 0, 0.5], "velocity": [0, 2.598076211353316, 0]}],
+    "vectors": [{"name": "z", "direction": [0, 0, 1], "fixed": true}],
+    "rods": [{"name": "rod", "between": ["O", "B"], "mass": 0}], "masses": [{"point": "B", "mass": 1}],
+    "constraints": [{"name": "cone", "type": "angle", "first": "z", "second": ["O", "B"]}],
+    "outputs": [{"name": "T", "constraint_force": "rod"}]})");
+  EXPECT_NEAR(values[0], 0.75 * 9 - 0.5 * 10, 1e-9);
 }
 
 TEST(ConstraintForce, OfAPerpendicularInSpaceIsATorqueAboutBoth) {
@@ -155,7 +223,8 @@ TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
   EXPECT_FALSE(drowns(1e16, Scheme::saddle_point));
   const State start = initial_state(scene.model);
   const auto said = [&](double penalty, Precision precision) {
-    return drowned_forces(scene.model, {.penalty = penalty, .precision = precision}, start);
+    return drowned_forces(scene.model, scene.model, {.penalty = penalty, .precision = precision},
+                          start);
   };
   EXPECT_EQ(said(1e9, Precision::double_precision), "");
   EXPECT_NE(said(1e9, Precision::single_precision), "");
@@ -165,11 +234,12 @@ TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
 TEST(ConstraintForce, IsNotDrownedWhereNothingActs) {
   const Model model(four_bar(1));
   State state = initial_state(model);
-  EXPECT_GT(rounding_of_penalty_forces(model, 1e20, state), 0.1);
+  EXPECT_GT(rounding_of_penalty_forces(model, model, 1e20, state), 0.1);
   ModelData weightless = four_bar(1);
   std::ranges::fill(weightless.force, 0.0);
   std::ranges::fill(state.lambda, 0.0);
-  EXPECT_EQ(rounding_of_penalty_forces(Model(std::move(weightless)), 1e20, state), 0.0);
+  const Model without(std::move(weightless));
+  EXPECT_EQ(rounding_of_penalty_forces(without, without, 1e20, state), 0.0);
 }
 
 TEST(Energy, IncludesWhatDrivenPointsCarry) {
@@ -185,6 +255,20 @@ TEST(Energy, IncludesWhatDrivenPointsCarry) {
   EXPECT_NEAR(values[0], 1.25, 1e-12);
   EXPECT_NEAR(values[1], 2 * 9.81 * 2.5, 1e-12);
   EXPECT_NEAR(values[2], 1.25 + 2 * 9.81 * 2.5, 1e-12);
+}
+
+TEST(Energy, IncludesSpringsWhoseStiffnessIsAFunctionOfTime) {
+  for (const char* length : {R"(, "length": 0.8)", ""}) {
+    for (const char* stiffness : {"100", R"({"polynomial": [100, 1e-9]})"}) {
+      const auto values = outputs_at_start(
+          R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
+        {"name": "B", "position": [1, 0]}], "masses": [{"point": "B", "mass": 1}],
+      "springs": [{"between": ["O", "B"], "damping": 3, "stiffness": )" +
+          std::string(stiffness) + length +
+          R"(}], "outputs": [{"name": "V", "energy": "potential"}]})");
+      EXPECT_NEAR(values[0], *length == '\0' ? 0.0 : 2.0, 1e-12) << stiffness << length;
+    }
+  }
 }
 
 TEST(Energy, OfABodyBetweenDrivenPointsIsWhole) {

@@ -139,6 +139,23 @@ TEST(Controls, SaysSoWhenThePassLimitIsHidden) {
       << verdict.reason;
 }
 
+/// The saddle-point form rounds q no more the larger alpha is, and its bound must not grow with it.
+TEST(Controls, AreRejectedAtAnyPenaltyFactorOfTheSaddlePointForm) {
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
+  for (const double penalty : {0.0, 1e25, 1e28}) {
+    const StepSettings settings =
+        chosen(scene.model, {.penalty = penalty, .scheme = Scheme::saddle_point});
+    const ReferenceRun reference = run_reference(scene, settings, 16);
+    for (const char* name : {"reference", "single_precision"}) {
+      Variant variant = test::control(name);
+      variant.serves = test::reference().serves;
+      const Verdict verdict =
+          check_in_process(scene, {name, nullptr, &variant}, settings, reference, kSeconds);
+      EXPECT_EQ(verdict.agrees(), variant.name == "reference") << penalty << name << verdict.reason;
+    }
+  }
+}
+
 /// Number of lines of `text` on which `expression` is found.
 long lines_with(const std::string& text, const std::string& expression) {
   const std::regex regex(expression);

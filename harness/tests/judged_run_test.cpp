@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -91,6 +92,35 @@ TEST(JudgedRun, FindsTheFirstLostStepHoweverSeldomItJudges) {
     EXPECT_EQ(seldom.status, every.status) << judge_every;
     EXPECT_EQ(seldom.failed_at, every.failed_at) << judge_every;
     EXPECT_EQ(seldom.reason, every.reason) << judge_every;
+  }
+}
+
+// A rod of 1/3 kg m^2 that is given a speed, or a torque: whole turns between two judged steps are
+// no rest.
+TEST(JudgedRun, SeesHalfATurnOfATorsionSpringHoweverFastItTurns) {
+  for (const auto& [speed, torque] : {std::pair{"98.17", "0"}, {"0", "300"}}) {
+    const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "O", "position": [0, 0], "fixed": true}, {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "B", "position": [1, 0], "velocity": [0, )" +
+                                                       std::string(speed) + R"(]}],
+    "rods": [{"between": ["O", "B"], "mass": 1}],
+    "torques": [{"direction": ["O", "B"], "torque": )" +
+                                                       torque + R"(}],
+    "torsion_springs": [{"from": ["O", "X"], "to": ["O", "B"], "stiffness": 1e-6, "angle": 0}]})"),
+                                 "test");
+    RunSettings settings;
+    settings.step = chosen(scene.model, {.step = 1e-3});
+    settings.duration = 8.0;
+    settings.judge_every = 1;
+    const RunSummary every = run(scene, test::reference(), settings);
+    EXPECT_EQ(every.status, RunStatus::diverged);
+    EXPECT_NE(every.reason.find("half a turn"), std::string::npos) << every.reason;
+    for (const int judge_every : {0, 100, 100'000}) {  // 0: as the program chooses
+      settings.judge_every = judge_every > 0 ? std::optional(judge_every) : std::nullopt;
+      const RunSummary seldom = run(scene, test::reference(), settings);
+      EXPECT_EQ(seldom.failed_at, every.failed_at) << judge_every;
+      EXPECT_EQ(seldom.reason, every.reason) << judge_every;
+    }
   }
 }
 

@@ -104,6 +104,16 @@ TEST(Ladder, ASoundImplementationGoesUpAsFarAsItServes) {
   EXPECT_TRUE(contains(run.output, "\nall that it serves is right: ")) << run.output;
 }
 
+TEST(Ladder, NothingServedIsNothingRight) {
+  const auto run =
+      test::run_program(MBS_CONTROLS, "check --ladder --implementation control/unsupported");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_FALSE(contains(run.output, "is right")) << run.output;
+  EXPECT_EQ(run.errors,
+            "mbs: control/unsupported: nothing was checked: it serves no rung (only even "
+            "numbers\\x0Aof loops)\n");
+}
+
 TEST(Ladder, WhatIsNotShownIsNotYet) {
   const auto run =
       test::run_program(MBS_CONTROLS, "check --ladder --implementation control/returns_at_once");

@@ -106,6 +106,23 @@ TEST(OutputValues, AnglesInSpaceTurnAboutTheirAxis) {
   EXPECT_NEAR(values_of(scene, angle, 0, state, {"phi"})[0], std::atan2(-0.5, 1.0), 1e-15);
 }
 
+TEST(OutputValues, AnglesInSpaceNeedNoDirectionAcrossTheAxis) {
+  ModelData data;
+  data.dimension = 3;
+  data.points = {{"A", -1, {1, 0, 1}, true}, {"z", -1, {0, 0, 1}, true}, {"B", 0, {1, 0, 2}, true}};
+  for (int i = 0; i < 3; ++i) data.mass.push_back({i, i, 1.0});
+  data.force = data.initial_velocity = {0.0, 0.0, 0.0};
+  Scene scene{"test", Model(data), {}, {}};
+  Output angle{"phi", Output::Kind::angle};
+  angle.first = {-1, 0};
+  angle.second = {-1, 2};
+  angle.axis = 1;
+  for (const double phi : {0.3, 1.0, 2.5, -1.5}) {
+    const State state{{std::cos(phi), std::sin(phi), 2}, {0, 0, 0}, {0, 0, 0}, {}, 0.0};
+    EXPECT_NEAR(values_of(scene, angle, 0, state, {"phi"})[0], phi, 1e-14);
+  }
+}
+
 TEST(OutputValues, ConstraintForcesArePulls) {
   // A rod of 2 m without mass holds 3 kg up: 3 * 9.81 N of tension, lambda = T / (2 L).
   ModelData data;
@@ -118,6 +135,7 @@ TEST(OutputValues, ConstraintForcesArePulls) {
   const Scene scene{"test", Model(data), {}, {}};
   const State state{{0, -2}, {0, 0}, {0, 0}, {3 * 9.81 / 4, -7.0}, 0.0};
   Output force{"tension", Output::Kind::constraint_force};
+  force.first = {0, 1};
   force.rows = {0};
   EXPECT_NEAR(values_of(scene, force, 0, state, {"tension"})[0], 3 * 9.81, 1e-12);
   force.rows = {1};

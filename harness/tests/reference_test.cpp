@@ -286,5 +286,29 @@ TEST(ReferenceSimulation, TangentConditionIsThatOfTheTangent) {
   }
 }
 
+/// By dense matrices: (eps + J M^-1 J^T)^-1, and the tangent with the penalty factor that it makes.
+TEST(ReferenceSimulation, InTheSaddlePointFormNoConditionGrowsWithAlpha) {
+  const Scene scene = load_scene("four-bar:3");
+  for (const double penalty : {1e8, 1e12, 1e25}) {
+    const StepSettings settings{
+        .penalty = penalty, .tolerance = 1e-9, .scheme = Scheme::saddle_point};
+    ReferenceSimulation simulation(scene.model, settings);
+    simulation.set_state(initial_state(scene.model));
+    static_cast<void>(simulation.step());
+    State state;
+    simulation.get_state(state);
+    StepSettings in_effect = settings;
+    in_effect.penalty = 4 / (settings.step * settings.step) /
+                        (4 / (settings.step * settings.step * penalty) +
+                         smallest_constraint_eigenvalue(scene.model, state.q));
+    EXPECT_NEAR(simulation.effective_penalty(), in_effect.penalty, 0.05 * in_effect.penalty)
+        << penalty;
+    const Eigen::VectorXd eigenvalues =
+        test::eigenvalues(test::dense_tangent(scene.model, state.q, in_effect));
+    const double expected = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
+    EXPECT_NEAR(simulation.tangent_condition(), expected, 0.1 * expected) << penalty;
+  }
+}
+
 }  // namespace
 }  // namespace mbs

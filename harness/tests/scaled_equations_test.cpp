@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "controls/controls.hpp"
 #include "controls/wrapped_reference.hpp"
@@ -114,6 +115,32 @@ TEST(ScaledEquations, AreStepsOfTheJudgeToo) {
   settings.half_step->step /= 2;
   EXPECT_EQ(run(scene, variant, settings).status, RunStatus::ok);
   EXPECT_EQ(plain, 0);
+}
+
+// Two masses go round on rods, one of them of 1000 t: its constraint is multiplied by 512 or so.
+TEST(ScaledEquations, SayThatRoundingDrownsTheForcesAsTheyAre) {
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "O", "position": [0, 0], "fixed": true},
+      {"name": "A", "position": [1, 0], "velocity": [0, 1]},
+      {"name": "B", "position": [0, 1], "velocity": [1, 0]}],
+    "rods": [{"name": "light", "between": ["O", "A"], "mass": 0}, {"name": "heavy", "between": ["O", "B"], "mass": 0}],
+    "masses": [{"point": "A", "mass": 1}, {"point": "B", "mass": 1e6}],
+    "outputs": [{"name": "T", "constraint_force": "heavy"}]})"),
+                               "test");
+  const ScaledEquations scaled(scene.model);
+  const double factor = scaled.factors()[1];
+  EXPECT_GT(factor, 100.0);
+  const auto drowns = [&](double share) {
+    RunSettings settings;
+    settings.scale_equations = true;
+    settings.duration = 0.01;
+    // alpha (2 factor)^2 epsilon of the 1e6 N that turn the heavy one
+    settings.step.penalty = share * 1e6 / (4 * factor * factor * 2.2e-16);
+    settings.step.tolerance = 1e-9;
+    return !run(scene, test::reference(), settings).forces_lost.empty();
+  };
+  EXPECT_FALSE(drowns(0.05));
+  EXPECT_TRUE(drowns(0.3));
 }
 
 TEST(ScaledEquations, AreASettingOfARun) {

@@ -117,6 +117,16 @@ TEST_F(SimulateOutput, CompressesWhatEndsInGz) {
   EXPECT_LT(test::file_text(folder_.file("all.csv.gz")).size(), plain.size() / 2);
 }
 
+TEST_F(SimulateOutput, NamesMayBeAsLongAsTheSystemAllows) {
+  for (const std::size_t length : {200U, 236U, 255U}) {
+    const std::string name = std::string(length - 4, 'x') + ".csv";
+    const auto run = simulate(scene() + " --duration 0.01" + to("--output", name.c_str()));
+    EXPECT_EQ(run.status, 0) << length << run.errors;
+    EXPECT_EQ(read_table(folder_.file(name)).rows.size(), 9u);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}), 4);
+}
+
 TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
   const auto run = simulate(scene() + " --duration 0.01 --json");
   ASSERT_EQ(run.status, 0) << run.errors;

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "describe/describe.hpp"
@@ -162,6 +164,31 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
           << loops << ", " << step << ": " << bound / per_beta << " against " << measured;
     }
   }
+}
+
+/// What mbs says of the forces of a square's rods and an angle at its corner.
+std::string said_of_square(const std::string& rods, const std::string& constraints = "") {
+  return force_warning(scene_of(
+      nlohmann::json::parse(R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
+      {"name": "A", "position": [1, 0]}, {"name": "B", "position": [1, 1]}, {"name": "C", "position": [0, 1]}],
+    "rods": [{"name": "OA", "between": ["O", "A"], "mass": 1}, {"name": "AB", "between": ["A", "B"], "mass": 1},
+      {"name": "BC", "between": ["B", "C"], "mass": 1}, {"name": "CO", "between": ["C", "O"], "mass": 1})" +
+                            rods + R"(], "constraints": [)" + constraints +
+                            R"(], "outputs": [{"name": "pull", "constraint_force": "OA"}]})"),
+      "test"));
+}
+
+TEST(Warnings, TellOfForcesThatConstraintsLeaveOpen) {
+  const std::string one = R"(, {"between": ["O", "B"], "mass": 1})";
+  EXPECT_EQ(said_of_square(one), "");
+  EXPECT_NE(
+      said_of_square(one + R"(, {"between": ["A", "C"], "mass": 1})").find("outputs \"pull\":"),
+      std::string::npos);
+  // Of the two rows of a driven angle one depends on the other and on the rods: what they do does
+  // not.
+  EXPECT_EQ(said_of_square("", R"({"type": "angle", "first": ["O", "A"], "second": ["A", "B"],
+                                   "value": {"polynomial": [1.5707963267948966, 0.1]}})"),
+            "");
 }
 
 // In single precision, against measured maps: what of beta (decades) is ok, where any is.

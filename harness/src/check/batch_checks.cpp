@@ -11,6 +11,7 @@
 #include "check/lock_step.hpp"
 #include "check/processor_time.hpp"
 #include "check/varied_lanes.hpp"
+#include "model_math/extent.hpp"
 #include "printable.hpp"
 #include "registry/factory.hpp"
 
@@ -126,7 +127,7 @@ std::vector<Check> batch_checks(const Variant& variant, const Model& model,
                                 const StepSettings& settings, const ReferenceRun& reference,
                                 double seconds) {
   LockStep lock_step("batch");
-  Running running{free_running_tolerance(reference.probes.back(), settings),
+  Running running{free_running_tolerance(reference.probes.back(), settings, extent(model.points())),
                   std::min(kSteps, reference.positions.size())};
   const double begin = processor_seconds();
   int part = 0;

@@ -48,13 +48,21 @@ LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& se
               (probe.outcome.passes * settings.penalty * phi + unit * largest(probe.after.lambda))};
 }
 
-FreeRunningTolerance free_running_tolerance(const Probe& probe, const StepSettings& settings) {
-  if (settings.precision == Precision::single_precision) return {1e-2, 1.0, false};
+double most_allowed(const StepSettings& settings) {
+  return settings.precision == Precision::double_precision ? 1e-6 : 1e-2;
+}
+
+FreeRunningTolerance free_running_tolerance(const Probe& probe, const StepSettings& settings,
+                                            double extent) {
+  const double length = std::min(extent, 1.0);
+  if (settings.precision == Precision::single_precision) return {1e-2 * length, 1.0, false};
   // Where max |Delta q| comes to lie at the tolerance, rounding decides on one more pass.
   constexpr double kSeldom = 0.005, kOften = 0.2;
   const double step = lock_step_tolerance(probe, settings).q;
-  if (step > 1e-8) return {100 * step, kOften, false};
-  return {1e-7, kSeldom, true};
+  if (step > 1e-8 * length) {
+    return {std::min(100 * step, most_allowed(settings) * extent), kOften, false};
+  }
+  return {1e-7 * length, kSeldom, true};
 }
 
 void LockStep::add(const Probe& probe, const StepSettings& settings, const StepOutcome& outcome,

@@ -18,6 +18,9 @@ struct LockStepTolerance {
 };
 LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings);
 
+/// Above this share of the scene's extent a difference of q judges nothing.
+double most_allowed(const StepSettings& settings);
+
 /// What a free-running motion may differ by.
 struct FreeRunningTolerance {
   double q;          ///< m, after every step
@@ -25,11 +28,12 @@ struct FreeRunningTolerance {
   bool multipliers;  ///< whether they can be judged
 };
 /// In double precision q is far above what rounding grows to and far below the method's own error,
-/// of about 1e-6 m and more. Where rounding may move q by more than a tenth of that in one step, it
-/// also decides on many a pass, and one pass more changes lambda by as much as it moves. Single
-/// precision has no solution to agree on beyond its own digits: here it must only follow the same
-/// motion.
-FreeRunningTolerance free_running_tolerance(const Probe& probe, const StepSettings& settings);
+/// of about 1e-6 m and more in a scene of 1 m; `extent` (m) is the scene's. Where rounding may move
+/// q by more than a tenth of that in one step, it also decides on many a pass, and one pass more
+/// changes lambda by as much as it moves. Single precision has no solution to agree on beyond its
+/// own digits: here it must only follow the same motion.
+FreeRunningTolerance free_running_tolerance(const Probe& probe, const StepSettings& settings,
+                                            double extent);
 
 /// Gathers comparisons into one check: the worst difference in units of its tolerance.
 class LockStep {

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/lock_step.hpp"
 #include "describe/warnings.hpp"
+#include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 #include "usage_error.hpp"
@@ -32,6 +34,18 @@ std::string what_helps(const Model& model, const StepSettings& settings) {
       setting_warnings(model, settings, is_auto ? PenaltyFrom::rule : PenaltyFrom::user);
   if (!known.empty()) return fmt::format("{}", fmt::join(known, "; "));
   return fmt::format("choose a shorter step{}", is_auto ? "" : ", or let --penalty be auto");
+}
+
+/// A bound that no difference exceeds says nothing.
+void require_judgeable(const Scene& scene, const StepSettings& settings, const Probe& probe) {
+  const double size = extent(scene.model.points()), most = most_allowed(settings);
+  const double allowed = lock_step_tolerance(probe, settings).q;
+  if (allowed <= most * size) return;
+  throw UsageError(fmt::format(
+      "scene '{}': nothing can be compared with step {:g} s and penalty {:.3g}: in the step from "
+      "t = {:g} s rounding may move q by {:.1e} m, more than {:g} of the scene's {:.3g} m; {}",
+      scene.name, settings.step, settings.penalty, probe.t, allowed, most, size,
+      what_helps(scene.model, settings)));
 }
 
 }  // namespace
@@ -72,7 +86,10 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings, int
     result.positions.push_back(state.q);
     result.multipliers.push_back(state.lambda);
   }
-  for (Probe& probe : result.probes) take_probe(reference, scene.model, probe);
+  for (Probe& probe : result.probes) {
+    take_probe(reference, scene.model, probe);
+    require_judgeable(scene, settings, probe);
+  }
   return result;
 }
 

@@ -32,8 +32,8 @@ struct ReferenceRun {
 void take_probe(ReferenceSimulation& reference, const Model& model, Probe& probe);
 
 /// Runs the reference over the stretch of `scene`: `most` steps (16 or more), fewer from 500
-/// variables up so that its cost stays bounded, never fewer than 16. Throws UsageError if the
-/// reference itself fails, since then nothing can be checked with these settings.
+/// variables up so that its cost stays bounded, never fewer than 16. Throws UsageError if nothing
+/// can be checked with these settings: the reference itself fails, or rounding may move q too far.
 ReferenceRun run_reference(const Scene& scene, const StepSettings& settings, int most = 800);
 
 }  // namespace mbs

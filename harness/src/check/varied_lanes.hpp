@@ -18,10 +18,11 @@ struct VariedLanes {
   [[nodiscard]] int count() const { return static_cast<int>(models.size()); }
 };
 
-/// `count` lanes like `model`, each with masses, forces and penalty factor of its own, and lengths
-/// where nothing has one by itself, that start where `start`, a state of the model, is. From one to
-/// the next, masses grow by `mass_apart` of the model's, lengths by half of that; forces with the
-/// square of the mass.
+/// `count` lanes like `model`, each with all numbers of its own (lengths where nothing has one by
+/// itself, such as a unit vector or a driver), that start where `start`, a state of the model, is.
+/// From one to the next, masses grow by `mass_apart` of the model's, lengths by half of that;
+/// forces with the square of the mass. Drivers are where and as fast as they were at the start, and
+/// then go on more slowly.
 VariedLanes vary_lanes(int count, double mass_apart, const Model& model,
                        const StepSettings& settings, const State& start);
 

@@ -13,7 +13,7 @@ struct Check {
   std::string name;             ///< "lock-step", "free-running", "passes", "exact", ...
   std::optional<double> value;  ///< measured; none if not run, or not a number
   std::optional<double> tolerance;
-  std::optional<bool> passed;  ///< none if not run; `detail` says why
+  std::optional<bool> passed;  ///< none if not run, or `value` judges nothing; see `detail`
   std::string detail;          ///< one line: where, which quantity, what unit
 };
 

@@ -2,13 +2,18 @@
 #include "describe/warnings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/spring_diagonal.hpp"
+#include "printable.hpp"
+#include "run/constraint_force.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"
@@ -32,6 +37,33 @@ std::string step_warning(const PenaltyWindow& window, const StepSettings& settin
   if (window.widest < least_width(window)) return "no step suits " + what;
   return fmt::format("the step {:g} s is too {} for {}, or a {} step", settings.step,
                      is_long ? "long" : "short", what, is_long ? "shorter" : "longer");
+}
+
+bool is_force(const Output& output) { return output.kind == Output::Kind::constraint_force; }
+
+/// Whether the force is the same for all lambda with the same Phi_q^T lambda: its coefficients are
+/// in the range of Phi_q, whose `entries` and `rank` these are.
+bool is_determined(const Scene& scene, const Output& output, State state,
+                   const std::vector<JacobianEntry>& entries, int rank) {
+  const Model& model = scene.model;
+  SceneMotion motion(scene);
+  motion.set(0.0, state);
+  state.lambda.assign(static_cast<std::size_t>(model.constraints()), 0.0);
+  std::vector<JacobianEntry> with_force = entries;
+  for (const int row : output.rows) {
+    double& lambda = state.lambda[static_cast<std::size_t>(row)];
+    lambda = 1.0;
+    const Vector3 by_row = output.force == Output::Force::vector
+                               ? constraint_vector(scene, motion, state, output)
+                               : Vector3{constraint_scalar(scene, motion, state, output)};
+    lambda = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      with_force.push_back({row, model.variables() + axis, by_row[static_cast<std::size_t>(axis)]});
+    }
+  }
+  std::ranges::stable_sort(with_force, {}, &JacobianEntry::row);
+  const auto found = find_rank(model.constraints(), model.variables() + 3, with_force);
+  return !found || found->rank == rank;
 }
 
 }  // namespace
@@ -102,6 +134,28 @@ std::string start_warning(const Model& model, const Structure& structure) {
       "the start is a singular position: {} hold(s) nothing there that others do not (mbs "
       "describe)",
       row_name(model, structure.singular_rows.front()));
+}
+
+std::string force_warning(const Scene& scene) {
+  const Model& model = scene.model;
+  const int rows = model.constraints(), cols = model.variables();
+  if (cols > kMostVariablesToWarn || std::ranges::none_of(scene.elements.outputs, is_force))
+    return "";
+  const auto q = model.initial_position(), v = model.initial_velocity();
+  std::vector<JacobianEntry> entries = jacobian(model, 0.0, q);
+  const auto own = find_rank(rows, cols, entries);
+  if (!own || own->dependent.empty()) return "";
+  const State start{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}, 0.0};
+  std::vector<std::string> open;
+  for (const Output& output : scene.elements.outputs) {
+    if (is_force(output) && !is_determined(scene, output, start, entries, own->rank))
+      open.push_back(in_quotes(output.name));
+  }
+  if (open.empty()) return "";
+  return fmt::format(
+      "outputs {}: constraints depend on each other at the start (mbs describe), so that these are "
+      "forces that hold the motion, but not the only ones",
+      fmt::join(open, ", "));
 }
 
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,

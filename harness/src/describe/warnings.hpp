@@ -7,6 +7,7 @@
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "mbs/simulation.hpp"
+#include "scene/scene.hpp"
 
 namespace mbs {
 
@@ -54,7 +55,11 @@ std::string start_warning(const Model& model, const Structure& structure);
 /// Whether the tolerance is above kLoosest times the automatic one; one line, empty if not.
 std::string tolerance_warning(const Model& model, const StepSettings& settings);
 
-/// All of these, one line each.
+/// Which outputs are forces of constraints that depend on each other at the start, so that other
+/// forces would hold the same motion; one line, empty if none is.
+std::string force_warning(const Scene& scene);
+
+/// All that the model tells, one line each.
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,
                                           PenaltyFrom from);
 

@@ -302,9 +302,38 @@ StepOutcome ReferenceSimulation::do_step() {
   return is_rattle() ? rattle_step(settings_.scheme) : trapezoidal_step();
 }
 
-double ReferenceSimulation::tangent_condition() {
+namespace {
+
+/// Power iteration: the largest eigenvalue of `apply`, to a few per cent.
+template <class Apply>
+Real largest_eigenvalue(int size, Apply&& apply) {
+  ReferenceSimulation::Vector x(size);
+  for (int i = 0; i < size; ++i) x[i] = 1 + std::sin(Real(i + 1)) / 2;
+  const auto norm_of = [&x] {
+    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real{0}));
+  };
+  for (int round = 0; round < 30; ++round) {
+    const Real norm = norm_of();
+    for (Real& value : x) value /= norm;
+    x = apply(x);
+  }
+  return norm_of();
+}
+
+}  // namespace
+
+double ReferenceSimulation::effective_penalty() const {
+  if (!is_saddle() || m_ == 0) return settings_.penalty;
+  const Real inverse = largest_eigenvalue(
+      m_, [this](const Vector& y) { return solve({}, Vector(n_, Real{0}), y).y; });
+  const Real h = settings_.step;
+  return std::min(settings_.penalty, static_cast<double>(4 / (h * h) * inverse));
+}
+
+double ReferenceSimulation::tangent_condition() const {
   StepSettings settings = settings_;
   settings.scheme = Scheme::penalty;
+  settings.penalty = effective_penalty();
   settings.geometric_stiffness = false;
   ReferenceSimulation penalty_form(model_, settings);
   penalty_form.q_ = q_;
@@ -312,26 +341,14 @@ double ReferenceSimulation::tangent_condition() {
   penalty_form.known_.set_time(time());
   const std::vector<Row> rows = penalty_form.jacobian();
   if (!penalty_form.factorize(rows)) return std::numeric_limits<double>::infinity();
-  const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
-  const auto multiply = [&](const Vector& x) {  // T x, Eq. (5), without the factor
+  const Real scale = Real{settings.step} * settings.step / 4 * settings.penalty;
+  const Real largest = largest_eigenvalue(n_, [&](const Vector& x) {  // T x without the factor
     Vector y = transpose_times(rows, times(rows, x));
     const Vector inertia = penalty_form.weighted_mass_times(x);
     for (int i = 0; i < n_; ++i) y[i] = inertia[i] + scale * y[i];
     return y;
-  };
-  const auto iterate = [this](auto&& apply) {  // power iteration: largest eigenvalue of `apply`
-    Vector x(n_);
-    for (int i = 0; i < n_; ++i) x[i] = 1 + std::sin(Real(i + 1)) / 2;
-    Real norm = 0;
-    for (int round = 0; round < 30; ++round) {
-      norm = std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real{0}));
-      for (Real& value : x) value /= norm;
-      x = apply(x);
-    }
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real{0}));
-  };
-  const Real largest = iterate(multiply);
-  const Real inverse_smallest = iterate([&](Vector x) {
+  });
+  const Real inverse_smallest = largest_eigenvalue(n_, [&](Vector x) {
     penalty_form.solve_matrix(x);
     return x;
   });

@@ -29,8 +29,14 @@ class ReferenceSimulation final : public Simulation {
   /// `model` must outlive the simulation.
   ReferenceSimulation(const Model& model, const StepSettings& settings);
 
-  /// Condition number (2-norm) of the tangent of the last step, to a few per cent.
-  [[nodiscard]] double tangent_condition();
+  /// What multiplies an error of Phi in lambda, to a few per cent: alpha in the penalty form. In
+  /// the others 4/dt^2 |(eps + Phi_q T_0^-1 Phi_q^T)^-1| with the last factors, at most alpha, and
+  /// far less where no constraint depends on others.
+  [[nodiscard]] double effective_penalty() const;
+
+  /// Condition number (2-norm) of the tangent (5) after the last step, with the effective penalty
+  /// factor, to a few per cent.
+  [[nodiscard]] double tangent_condition() const;
 
  protected:
   void do_set_state(const State& state) override;

@@ -19,17 +19,20 @@ Vector3 times_transposed(const BilinearConstraint& c, const Vector3& u) {
   return multiply_transposed(c.B, u);
 }
 
-bool is_edge(int a, int b, const Direction& direction) {
-  return a == direction.to && (direction.from < 0 || b == direction.from);
+/// r_a - r_b as a multiple of the direction: 1, -1, or 0 if it is another.
+double multiple(int a, int b, const Direction& direction) {
+  if (a == direction.to && (direction.from < 0 || b == direction.from)) return 1.0;
+  return a == direction.from && b == direction.to ? -1.0 : 0.0;
 }
 
-/// By u or w of Phi = u . B w - s.
+/// By u and w of Phi = u . B w - s.
 template <class Constraint>
 std::optional<Vector3> quadratic_gradient(const Constraint& c, const SceneMotion& motion,
                                           const Direction& direction) {
-  if (is_edge(c.a, c.b, direction)) return times(c, along(motion, {c.d, c.c}));
-  if (is_edge(c.c, c.d, direction)) return times_transposed(c, along(motion, {c.b, c.a}));
-  return std::nullopt;
+  const double in_u = multiple(c.a, c.b, direction), in_w = multiple(c.c, c.d, direction);
+  if (in_u == 0.0 && in_w == 0.0) return std::nullopt;
+  return in_u * times(c, along(motion, {c.d, c.c})) +
+         in_w * times_transposed(c, along(motion, {c.b, c.a}));
 }
 
 /// The coefficients of a point; none if it has none.
@@ -63,6 +66,18 @@ std::optional<Vector3> gradient(const Model& model, const SceneMotion& motion, i
   return -1.0 * *at_start;
 }
 
+/// What the rows of a distance, and of angles, do along it.
+double tension(const Model& model, const SceneMotion& motion, const State& state,
+               const Output& output) {
+  const Vector3 u = along(motion, output.first);
+  double result = 0.0;
+  for (const int row : output.rows) {
+    const auto by_first = gradient(model, motion, row, output.first);
+    if (by_first) result += state.lambda[static_cast<std::size_t>(row)] * dot(*by_first, u);
+  }
+  return result / norm(u);
+}
+
 /// A turn of `second` by a small angle is one of `first` by its opposite; rows have either or both.
 double torque(const Model& model, const SceneMotion& motion, const State& state,
               const Output& output) {
@@ -85,18 +100,13 @@ double torque(const Model& model, const SceneMotion& motion, const State& state,
 
 double constraint_scalar(const Scene& scene, const SceneMotion& motion, const State& state,
                          const Output& output) {
-  const int row = output.rows.front();
-  const double lambda = state.lambda[static_cast<std::size_t>(row)];
   switch (output.force) {
-    case Output::Force::tension: {
-      // -Phi_q^T lambda is -2 lambda (r_a - r_b) at a: a pull of 2 lambda |r_a - r_b| towards b.
-      const DotConstraint& c = scene.model.dot_constraints()[static_cast<std::size_t>(row)];
-      return 2.0 * lambda * norm(along(motion, {c.b, c.a}));
-    }
+    case Output::Force::tension:
+      return tension(scene.model, motion, state, output);
     case Output::Force::torque:
       return torque(scene.model, motion, state, output);
     case Output::Force::multiplier:
-      return output.factor * lambda;
+      return output.factor * state.lambda[static_cast<std::size_t>(output.rows.front())];
     case Output::Force::vector:
       break;
   }

@@ -35,7 +35,7 @@ void require_driver(const std::string& where, const Driver& driver, double step,
   }
   const bool is_bounded = std::isfinite(driver.least) || std::isfinite(driver.largest_change);
   double before = driver.value.at(0.0).value;
-  for (long i = 1; is_bounded && i <= steps; ++i) {
+  for (long i = 0; is_bounded && i <= steps; ++i) {
     const double t = static_cast<double>(i) * step, value = driver.value.at(t).value;
     if (!(value >= driver.least && value <= driver.most)) {
       fail(

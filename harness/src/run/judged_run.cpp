@@ -41,19 +41,20 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       observer_(std::move(observer)),
       steps_(count_steps(settings)),
       interval_(judge_interval(scene, settings)),
-      next_judged_(judged_after(0)),
       next_look_(steps_ + 1),
       state_(std::move(start)),
       samples_(judged_together(scene, settings, observer_ != nullptr), Sample{0, state_, state_}),
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
+      quarter_turn_(scene),
       local_errors_(scene, judge_.length(), watch_.passes_on()),
       adds_local_errors_(watch_.freedoms() > 0),
       is_driven_(is_driven(scene.model)) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
+  next_judged_ = judged_after(0, state_);
   if (watch_.is_needed()) next_look_ = looked_after(state_);
   if (adds_local_errors_ && !is_conservative(scene_.model)) balance_.emplace(scene_);
   if (observer_) observer_(0, 0.0, state_);
@@ -67,16 +68,29 @@ void JudgedRun::begin(Access access) {
 
 double JudgedRun::time(long step) const { return static_cast<double>(step) * settings_.step.step; }
 
-/// The first step that is judged after the judged one `step`, or of all after 0: one in every
-/// `interval_` steps, at uneven places, so that a motion that repeats is not always met at the same
-/// one, and the last.
+/// The first step after `step` that is judged in any case: one in every `interval_` steps, at
+/// uneven places, so that a motion that repeats is not always met at the same one, and the last.
 long JudgedRun::judged_after(long step) const {
   constexpr double kGoldenRatio = 0.6180339887498949;
-  const long block = step == 0 ? 0 : (step - 1) / interval_ + 1;
-  const double turned = static_cast<double>(block + 1) * kGoldenRatio;
-  const double share = turned - std::floor(turned);
-  const long place = static_cast<long>(share * static_cast<double>(interval_));
-  return std::min(steps_, block * interval_ + place + 1);
+  for (long block = step == 0 ? 0 : (step - 1) / interval_;; ++block) {
+    const double turned = static_cast<double>(block + 1) * kGoldenRatio;
+    const double share = turned - std::floor(turned);
+    const long place = static_cast<long>(share * static_cast<double>(interval_));
+    const long judged = std::min(steps_, block * interval_ + place + 1);
+    if (judged > step || judged == steps_) return judged;
+  }
+}
+
+/// The next one after `step`, whose state this is: before torsions have turned so far that whole
+/// turns could be mistaken.
+long JudgedRun::judged_after(long step, const State& state) {
+  const long latest = judged_after(step);
+  if (!quarter_turn_.is_needed()) return latest;
+  looking_.begin();
+  const double steps = quarter_turn_.time(time(step), state) / settings_.step.step;
+  looking_.end();
+  const auto most = static_cast<double>(latest - step);
+  return step + static_cast<long>(std::clamp(steps, 1.0, std::max(1.0, most)));
 }
 
 void JudgedRun::count(const StepOutcome& outcome) {
@@ -102,13 +116,13 @@ void JudgedRun::take(const StepOutcome& outcome) {
   if (is_judged) {
     samples_[waiting_].step = step;
     copy(samples_[waiting_].after);
+    next_judged_ = judged_after(step, samples_[waiting_].after);
     ++waiting_;
     // A step at the limit may be one of a motion that is lost, of which each takes long.
     const bool is_doubtful = outcome.status == StepStatus::pass_limit;
     if (waiting_ == samples_.size() || step == steps_ || is_doubtful) judge_samples();
     if (set_back_ && !is_over_) catch_up();
     if (is_over_) return;
-    next_judged_ = judged_after(step);
   }
   const bool is_before = adds_local_errors_ && step < steps_ && step + 1 == next_judged_;
   constexpr long kBetween = 8;  // steps: what a jump changed is still there a little later
@@ -205,9 +219,7 @@ long JudgedRun::looked_after(const State& present) const {
   double speed = 0.0, acceleration = 0.0;
   for (const double v : present.v) speed = std::max(speed, std::abs(v));
   for (const double a : present.a) acceleration = std::max(acceleration, std::abs(a));
-  // The smaller root of acceleration t^2/2 + speed t = way.
-  const double way = kWay * length;
-  const double t = 2 * way / (speed + std::sqrt(speed * speed + 2 * acceleration * way) + 1e-300);
+  const double t = time_to_go(kWay * length, speed, acceleration);
   return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
 }
 
@@ -332,7 +344,7 @@ void JudgedRun::conclude() {
   if (std::ranges::any_of(scene_.elements.outputs, is_force)) {
     State state;
     access_.get_state(state);
-    add(summary_.forces_lost = drowned_forces(*access_.model, settings_.step, state));
+    add(summary_.forces_lost = drowned_forces(scene_.model, *access_.model, settings_.step, state));
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;

@@ -11,6 +11,7 @@
 #include "run/local_errors.hpp"
 #include "run/local_half_steps.hpp"
 #include "run/power_balance.hpp"
+#include "run/quarter_turn.hpp"
 #include "run/run.hpp"
 #include "run/sampled_time.hpp"
 #include "run/step_again.hpp"
@@ -71,6 +72,7 @@ class JudgedRun {
 
   [[nodiscard]] double time(long step) const;
   [[nodiscard]] long judged_after(long step) const;
+  [[nodiscard]] long judged_after(long step, const State& state);
   void count(const StepOutcome& outcome);
   void copy(State& state);
   void judge_samples();
@@ -101,7 +103,7 @@ class JudgedRun {
   Access access_;
   long steps_;        // of the whole run
   long interval_;     // between two judgements
-  long next_judged_;  // step
+  long next_judged_ = 0;  // step
   long next_look_;    // step; beyond the last where there is nothing to look at
   long last_look_ = 0;
   State state_;  // the last one that was looked at
@@ -111,6 +113,7 @@ class JudgedRun {
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;
+  QuarterTurn quarter_turn_;
   std::optional<PowerBalance> balance_;  // where energy is not conserved
   long judgements_ = 0, balanced_ = 0;   // balanced_: step, of errors where drivers lead, too
   std::optional<StepAgain> again_;       // of the trapezoidal forms

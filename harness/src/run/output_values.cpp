@@ -1,6 +1,7 @@
 // Each kind of output from one state.
 #include "run/output_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -17,6 +18,8 @@ OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
     }
   }
   angles_.resize(scene.elements.outputs.size(), 0.0);
+  has_angles_ = std::ranges::any_of(
+      scene.elements.outputs, [](const Output& one) { return one.kind == Output::Kind::angle; });
 }
 
 void OutputValues::follow(double t, const State& state) {
@@ -103,8 +106,9 @@ Vector3 OutputValues::along(const Direction& direction) const {
 
 double OutputValues::angle(const Output& output) const {
   const Vector3 u = along(output.first), w = along(output.second);
-  const Vector3 z = output.axis < 0 ? Vector3{0.0, 0.0, 1.0} : motion_.position(output.axis);
-  return std::atan2(dot(z, cross(u, w)), dot(u, w));
+  Vector3 z = output.axis < 0 ? Vector3{0.0, 0.0, 1.0} : motion_.position(output.axis);
+  z = (1.0 / norm(z)) * z;
+  return std::atan2(dot(z, cross(u, w)), dot(u, w) - dot(z, u) * dot(z, w));  // across z
 }
 
 }  // namespace mbs

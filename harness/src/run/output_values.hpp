@@ -29,6 +29,8 @@ class OutputValues {
   [[nodiscard]] std::vector<double> values() const;
   void values(std::span<double> result) const;
 
+  /// Whether values() depend on the states that follow() has seen before.
+  [[nodiscard]] bool has_angles() const { return has_angles_; }
   /// What follow() has made of the angles, one an output, to go on from a state in the past.
   [[nodiscard]] const std::vector<double>& angles() const { return angles_; }
   void set_angles(const std::vector<double>& angles) { angles_ = angles; }
@@ -44,6 +46,7 @@ class OutputValues {
   SceneMotion motion_;
   const State* state_ = nullptr;
   std::vector<double> angles_;  // continued, one an output; 0 where it is no angle
+  bool has_angles_ = false;
 };
 
 }  // namespace mbs

@@ -74,6 +74,12 @@ double SceneMotion::potential_energy() const {
   for (const auto& [point, force] : scene_.elements.driven_energy.forces) {
     result -= dot(force, known_.position(point));
   }
+  for (const std::size_t index : scene_.elements.driven_springs) {
+    const ForceLaw& spring = scene_.model.force_laws()[index];
+    const double free = spring.law.by_position.pieces.front().origin;
+    const double stretch = norm(position(spring.a) - position(spring.b)) - free;
+    result += spring.law.factor.at(t_).value / 2 * stretch * stretch;
+  }
   return result;
 }
 

@@ -33,7 +33,8 @@ class SceneMotion {
 
   /// Of all that moves, mass carried by driven points included, J.
   [[nodiscard]] double kinetic_energy() const;
-  /// That of the model, and of the constant forces on driven points, zero where they are at 0; J.
+  /// That of the model, of the constant forces on driven points, zero where they are at 0, and of
+  /// springs whose stiffness is a function of time; J.
   [[nodiscard]] double potential_energy() const;
 
  private:

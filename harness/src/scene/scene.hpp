@@ -52,7 +52,7 @@ struct Output {
     constraint_force,  ///< of the constraint whose rows are `rows`; `force` says what of it
   };
   enum class Force {
-    tension,     ///< of a distance, N: the pull of its ends on each other
+    tension,     ///< N: the pull of the ends of `first` on each other, by its distance and angles
     torque,      ///< of an angle, N m: on `second`, about z (3D: about first x second)
     vector,      ///< N: on the point first.to, which is held relative to first.from
     multiplier,  ///< `factor` times lambda
@@ -125,6 +125,8 @@ struct Elements {
   std::vector<Driver> drivers = {};
   std::vector<Input> inputs = {};
   DrivenEnergy driven_energy;
+  /// Springs whose stiffness is a function of time: indices into Model::force_laws().
+  std::vector<std::size_t> driven_springs = {};
 };
 
 /// What the assembly of the start changed.

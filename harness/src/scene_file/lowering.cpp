@@ -145,6 +145,7 @@ int Lowering::add_hidden(DraftPoint point) {
 }
 
 void Lowering::remember(const JsonNode& node, Force force) {
+  if (force.kind == Output::Force::torque) torques_.push_back(force);
   if (const auto name = node.find("name")) forces_.emplace(name->text(), std::move(force));
 }
 

@@ -74,6 +74,8 @@ class Lowering {
   /// For outputs by the name of the rod or constraint.
   void remember(const JsonNode& node, Force force);
   [[nodiscard]] const std::unordered_map<std::string, Force>& forces() const { return forces_; }
+  /// Of those that are torques, by whatever name: their rows pull along their directions, too.
+  [[nodiscard]] const std::vector<Force>& torques() const { return torques_; }
   /// A constant distance between two points of the model.
   void keep_length(int a, int b, double length) { lengths_.emplace(std::minmax(a, b), length); }
   [[nodiscard]] std::optional<double> constant_length(const DraftDirection& direction) const;
@@ -93,6 +95,7 @@ class Lowering {
   std::optional<MassWriter> mass_;
   int zero_ = -1;
   std::unordered_map<std::string, Force> forces_;   // of rods and constraints
+  std::vector<Force> torques_;
   std::map<std::pair<int, int>, double> lengths_;   // constant ones, by indices into the model
   std::map<std::array<int, 4>, std::string> dots_;  // path of the first such constraint
   struct Known {

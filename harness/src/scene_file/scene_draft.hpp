@@ -55,6 +55,7 @@ struct DraftBody {
   std::string name;
   Inertia inertia;
   std::vector<Item> items;
+  bool has_pose = false;                           ///< given, perhaps without what follows
   std::optional<Vector3> position = std::nullopt;  ///< of the local origin, given
   std::optional<Vector3> rotation = std::nullopt;  ///< axis times angle (planar: along z), given
   std::optional<Vector3> velocity = std::nullopt;  ///< of the local origin, given

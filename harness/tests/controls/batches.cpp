@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "reference/reference_simulation.hpp"
 #include "registry/factory.hpp"
@@ -93,6 +95,38 @@ class Mixes final : public SoundBatch {
       : SoundBatch(std::vector<const Model*>(models.size(), models[0]), settings) {}
 };
 
+/// Models that must be there before the batch of them.
+struct OwnModels {
+  std::vector<std::unique_ptr<Model>> models;
+  std::vector<const Model*> pointers;
+};
+
+/// Of each of the `items`, every lane has the `part` of lane 0.
+template <auto items, auto part>
+class MixesPart final : OwnModels, public SoundBatch {
+ public:
+  MixesPart(std::span<const Model* const> models, std::span<const StepSettings> settings)
+      : OwnModels(mixed(models)), SoundBatch(pointers, settings) {}
+
+ private:
+  static OwnModels mixed(std::span<const Model* const> lanes) {
+    OwnModels result;
+    const ModelData& first = lanes[0]->data();
+    for (const Model* lane : lanes) {
+      ModelData data = lane->data();
+      for (std::size_t i = 0; i < (data.*items).size(); ++i) {
+        std::invoke(part, (data.*items)[i]) = std::invoke(part, (first.*items)[i]);
+      }
+      result.models.push_back(std::make_unique<Model>(std::move(data)));
+      result.pointers.push_back(result.models.back().get());
+    }
+    return result;
+  }
+};
+
+constexpr auto kRates = [](auto& law) -> auto& { return law.law.by_rate; };
+constexpr auto kFactor = [](auto& law) -> auto& { return law.law.factor; };
+
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
   return std::make_unique<ReferenceSimulation>(model, settings);
 }
@@ -122,13 +156,31 @@ Variant variant(std::string name, decltype(Variant::create_batch) batch) {
 }  // namespace
 
 std::vector<Variant> batches() {
-  return {variant("sound", create_batch<SoundBatch>),
-          variant("lost_lane", create_batch<LostLane>),
-          variant("failed_lane", create_batch<FailedLane>),
-          variant("throws", create_batch<ThrowingBatch>),
-          variant("unsupported", refuse),
-          variant("leaks", create_batch<Leaks>),
-          variant("mixes", create_batch<Mixes>)};
+  return {
+      variant("sound", create_batch<SoundBatch>),
+      variant("lost_lane", create_batch<LostLane>),
+      variant("failed_lane", create_batch<FailedLane>),
+      variant("throws", create_batch<ThrowingBatch>),
+      variant("unsupported", refuse),
+      variant("leaks", create_batch<Leaks>),
+      variant("mixes", create_batch<Mixes>),
+      variant("mixes_dampings", create_batch<MixesPart<&ModelData::springs, &Spring::damping>>),
+      variant("mixes_lengths", create_batch<MixesPart<&ModelData::springs, &Spring::length>>),
+      variant("mixes_torsion_dampings",
+              create_batch<MixesPart<&ModelData::torsion_springs, &TorsionSpring::damping>>),
+      variant("mixes_angles",
+              create_batch<MixesPart<&ModelData::torsion_springs, &TorsionSpring::angle>>),
+      variant("mixes_force_rates", create_batch<MixesPart<&ModelData::force_laws, kRates>>),
+      variant("mixes_torque_rates", create_batch<MixesPart<&ModelData::torque_laws, kRates>>),
+      variant("mixes_factors", create_batch<MixesPart<&ModelData::force_laws, kFactor>>),
+      variant("mixes_B",
+              create_batch<MixesPart<&ModelData::bilinear_constraints, &BilinearConstraint::B>>),
+      variant("mixes_coefficients",
+              create_batch<MixesPart<&ModelData::linear_constraints, &LinearConstraint::terms>>),
+      variant("mixes_driven_points",
+              create_batch<MixesPart<&ModelData::driven_points, &DrivenPoint::position>>),
+      variant("mixes_driven_values",
+              create_batch<MixesPart<&ModelData::driven_values, &DrivenValue::value>>)};
 }
 
 long batch_steps() { return steps_of_lanes; }

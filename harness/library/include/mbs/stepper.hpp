@@ -140,7 +140,7 @@ class Stepper {
   /// time.
   [[nodiscard]] const State& state();
   /// One number an output; valid like state(). Driven points are where the inputs are now. Angles
-  /// count turns if they are asked for at least twice a turn.
+  /// count turns, provided that a step is less than half a turn.
   [[nodiscard]] std::span<const double> outputs();
 
   /// State and inputs. Kept tangents and the history of multistep6 begin anew with restore().

@@ -48,12 +48,20 @@ class Placement {
     }
   }
 
+  /// Of a pose that the file states: as it says, else as the places that the file gives show it,
+  /// else none.
+  [[nodiscard]] Matrix3 rotation(const DraftBody& body) const {
+    if (body.rotation) return rotation_matrix(*body.rotation);
+    const auto fitted = fit_pose(sightings(body, true), draft_.dimension, body.size);
+    return fitted ? fitted->R : Pose{}.R;
+  }
+
   /// A pose that the file states; without a position it hangs on the first point that has one.
   void place_given(int index) {
     const DraftBody& body = draft_.body(index);
-    if (!body.rotation && !body.position) return;
+    if (!body.has_pose) return;
     Pose given;
-    if (body.rotation) given.R = rotation_matrix(*body.rotation);
+    given.R = rotation(body);
     if (body.position) {
       given.origin = *body.position;
     } else {
@@ -87,8 +95,8 @@ class Placement {
 
   /// A pose without a position, of a body that hangs on nothing.
   void place_at_origin(int index) {
-    if (pose(index) || !draft_.body(index).rotation) return;
-    set_pose(index, {{}, rotation_matrix(*draft_.body(index).rotation)});
+    if (pose(index) || !draft_.body(index).has_pose) return;
+    set_pose(index, {{}, rotation(draft_.body(index))});
     place_fitted();
   }
 
@@ -98,7 +106,7 @@ class Placement {
       waiting_.pop_front();
       is_waiting_[static_cast<std::size_t>(index)] = false;
       if (pose(index)) continue;
-      if (draft_.body(index).rotation) {
+      if (draft_.body(index).has_pose) {
         place_given(index);
       } else if (const auto fitted = fit_pose(sightings(draft_.body(index)), draft_.dimension,
                                               draft_.body(index).size)) {

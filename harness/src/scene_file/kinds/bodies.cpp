@@ -66,8 +66,8 @@ void read_pose(SceneReader& reader, const JsonNode& node, DraftBody& body) {
   } else {
     node.allow_keys({"position", "angle"});
   }
+  body.has_pose = true;
   if (const auto position = node.find("position")) body.position = reader.coordinates(*position);
-  body.rotation = Vector3{};
   if (const auto rotation = node.find("rotation")) body.rotation = reader.coordinates(*rotation);
   if (const auto angle = node.find("angle")) body.rotation = Vector3{0.0, 0.0, angle->number()};
 }

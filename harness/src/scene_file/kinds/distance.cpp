@@ -42,7 +42,7 @@ Lowering::Force lower_distance(Lowering& scene, const DraftConstraint& constrain
   const auto name = constraint.node.find("name");
   scene.elements().distances.push_back({name ? name->text() : constraint.name, a, b});
   if (length.is_constant()) scene.keep_length(a, b, length.at(0.0).value);
-  return {Output::Force::tension};
+  return {Output::Force::tension, {}, between};
 }
 
 }  // namespace mbs

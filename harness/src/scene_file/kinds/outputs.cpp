@@ -79,6 +79,20 @@ void read_asked(SceneReader& reader, const JsonNode& node, const JsonNode& value
   }
 }
 
+/// Of a tension with those of the angles at it.
+std::vector<Lowering::Row> rows_of(const Lowering& scene, const Lowering::Force& force) {
+  std::vector<Lowering::Row> rows = force.rows;
+  if (force.kind != Output::Force::tension) return rows;
+  const auto is_along = [&force](const DraftDirection& other) {
+    return std::minmax(other.from, other.to) == std::minmax(force.first.from, force.first.to);
+  };
+  for (const Lowering::Force& torque : scene.torques()) {
+    if (!is_along(torque.first) && !is_along(torque.second)) continue;
+    rows.insert(rows.end(), torque.rows.begin(), torque.rows.end());
+  }
+  return rows;
+}
+
 /// In a table of all outputs, which starts with the time.
 void refuse_same_columns(Lowering& scene) {
   std::unordered_map<std::string, std::string> owner_of{{"t", "the time"}};
@@ -138,7 +152,9 @@ void lower_outputs(Lowering& scene) {
       }
       const Lowering::Force& force = found->second;
       output.force = force.kind;
-      for (const Lowering::Row row : force.rows) output.rows.push_back(scene.rows().place(row));
+      for (const Lowering::Row row : rows_of(scene, force)) {
+        output.rows.push_back(scene.rows().place(row));
+      }
       output.first = {force.first.from, force.first.to};
       output.second = {force.second.from, force.second.to};
       output.factor = force.factor;

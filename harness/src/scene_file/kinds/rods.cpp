@@ -31,7 +31,8 @@ void lower_rods(Lowering& scene) {
     const int a = scene.index(rod.a), b = scene.index(rod.b);
     scene.refuse_same_dot(rod.node, {rod.a, rod.b}, {rod.a, rod.b});
     scene.remember(rod.node, {Output::Force::tension,
-                              {{Lowering::Row::Kind::dot, scene.model().dot_constraints.size()}}});
+                              {{Lowering::Row::Kind::dot, scene.model().dot_constraints.size()}},
+                              {rod.a, rod.b}});
     scene.mass().add_rod({a, b, rod.mass, squared, rod.name}, scene.draft().gravity);
     scene.keep_length(a, b, std::sqrt(squared));
     const auto name = rod.node.find("name");

@@ -21,18 +21,21 @@ double optional_not_negative(const JsonNode& node, std::string_view key, const c
   return found ? found->number_at_least(0.0, allowed) : 0.0;
 }
 
-/// A number of at least 0, or a function of time that stays so; 0 without the key.
+/// A number of at least 0, or a function of time that is so at the start and in a run; 0 without
+/// the key. `name` is the spring's.
 TimeFunction not_negative_driver(SceneReader& reader, const JsonNode& node, std::string_view key,
-                                 const std::string& allowed) {
+                                 const std::string& name, const std::string& allowed) {
   const auto found = node.find(key);
   if (!found) return 0.0;
   if (found->is_number()) return found->number_at_least(0.0, allowed);
   Driver driver;
   driver.least = 0.0;
   driver.range = allowed;
+  driver.name = name;
   TimeFunction value = read_driver(reader, *found, allowed, std::move(driver));
-  if (const double always = value.at(0.0).value; value.is_constant() && always < 0.0) {
-    found->fail(fmt::format("{:g} at all times", always), allowed);
+  if (const double first = value.at(0.0).value; first < 0.0) {
+    const char* when = value.is_constant() ? "at all times" : "at t = 0 s";
+    found->fail(fmt::format("a value of {} of {:g} {}", name, first, when), allowed);
   }
   return value;
 }
@@ -79,9 +82,10 @@ void read_spring(SceneReader& reader, const JsonNode& node) {
   const auto [a, b] = reader.point_pair(between);
   reader.use_between(between, {a, b});
   DraftSpring spring{node, reader.element_name(node), a, b};
-  spring.stiffness =
-      not_negative_driver(reader, node, "stiffness", "a stiffness in N/m of at least 0");
-  spring.damping = not_negative_driver(reader, node, "damping", "a damping in N s/m of at least 0");
+  spring.stiffness = not_negative_driver(reader, node, "stiffness", spring.name,
+                                         "a stiffness in N/m of at least 0");
+  spring.damping =
+      not_negative_driver(reader, node, "damping", spring.name, "a damping in N s/m of at least 0");
   if (const auto length = node.find("length")) {
     spring.length = length->number_at_least(0.0, "a length in m of at least 0");
   }
@@ -95,6 +99,7 @@ void lower_springs(Lowering& scene) {
     std::vector<ForceLaw>& laws = scene.model().force_laws;
     if (!spring.stiffness.is_constant()) {
       if (!spring.length) scene.lowered().relaxed_force_laws.push_back(laws.size());
+      scene.elements().driven_springs.push_back(laws.size());
       laws.push_back({a, b, {unit_slope(length), {}, spring.stiffness}, spring.name});
     }
     if (!spring.damping.is_constant()) {
