@@ -18,6 +18,9 @@ FLAGS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-u
 TALL = """(() => { document.querySelectorAll('details').forEach(one => one.open = true);
   return [...document.querySelectorAll('figure, table')].filter(one => one.getBoundingClientRect().height > 2 * innerHeight)
     .map(one => one.outerHTML.slice(0, 120)); })()"""
+# Elements that hide something of their width.
+HIDDEN = """[...document.querySelectorAll('main *')].filter(one => one.scrollWidth > one.clientWidth + 1 &&
+  getComputedStyle(one).overflowX !== 'visible' && one.checkVisibility()).map(one => one.outerHTML.slice(0, 120))"""
 COMPLAINTS = ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled")
 
 

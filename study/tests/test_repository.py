@@ -11,7 +11,7 @@ import yaml
 from analysis.core import records, schema, site
 from analysis.core.files import ROOT, read_json
 from analysis.core.view import View, parts
-from study.tests.browser import TALL, Browser
+from study.tests.browser import HIDDEN, TALL, Browser
 from study.tests.conftest import study
 from study.tools import fragments
 
@@ -116,7 +116,7 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
         with Browser(tmp_path / "profile", 1300, 900) as browser:
             for page in sorted(copy.glob("*.html")):
                 browser.open(page)
-                assert browser.value(TALL) == [], page.name
+                assert browser.value(TALL) == browser.value(HIDDEN) == [], page.name
         assert [part for part in parts() if not (copy / f"{part}.html").exists()] == []
     else:
         for part in parts():

@@ -3,7 +3,7 @@ from urllib.parse import parse_qs
 
 import pytest
 
-from study.tests.browser import TALL
+from study.tests.browser import HIDDEN, TALL
 
 from analysis.core.view import parts
 
@@ -11,9 +11,6 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 PAGES = ["index", "explore", *parts()]
 
 LINKS = "[...document.querySelectorAll('a[href]')].map(one => one.getAttribute('href'))"
-# Elements that hide something of their width, and what the page itself has beyond its width.
-HIDDEN = """[...document.querySelectorAll('main *')].filter(one => one.scrollWidth > one.clientWidth + 1 &&
-  getComputedStyle(one).overflowX !== 'visible' && one.checkVisibility()).map(one => one.outerHTML.slice(0, 120))"""
 BEYOND = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 CONTRAST = """(() => {
   const colour = getComputedStyle(document.body), brightness = text => text.match(/[\\d.]+/g).slice(0, 3)
