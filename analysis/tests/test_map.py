@@ -218,7 +218,7 @@ def test_the_answer_counts_dense_solvers_with_sparse_assembly_and_names_the_leas
     for fill, times in ((None, (8.0, 3.5, 1.0)), (0.5, (8.0, 1.0, 2.0)), (1.0, (8.0, 1.0, 2.0))):
         rows += [row for name, time in zip((A, hybrid, B), times) for row in cell(name, 10, time, time, time, fill=fill)]
     found = results(rows, dense=[A, hybrid], sparse=[B])
-    known = {"tidy": found.tidy, "cells": table(found), "claims": pandas.DataFrame(columns=["id", "verdict"]), "controls": pandas.DataFrame()}
+    known = {"tidy": found.tidy, "cells": pandas.DataFrame(table(found)), "claims": pandas.DataFrame(columns=["id", "verdict"]), "controls": pandas.DataFrame()}
     said = {one["anchor"]: one["text"] for one in page.answers(known, found.view)}
     assert said["maps"] == "As the tangent fills, sparse assembly with a dense solver (hybrid_dense) leads, or is as fast, in 2 of 2 filled cells."
     assert said["regret"] == (f"The single library that costs least is {hybrid}: 1.52 times the best on average, 3.5 times at worst, over 3 cells. "
