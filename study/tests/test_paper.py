@@ -10,6 +10,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
+from analysis.core import timing
 from analysis.core.files import ROOT, read_json, write_json
 from analysis.core.style import Look
 from analysis.map import figures as maps
@@ -321,8 +322,9 @@ def test_a_smaller_factor_may_be_ok(status, holds):
 
 @pytest.mark.parametrize("share, fill, holds", [(0.8, 0.5, True), (0.4, 0.5, False), (0.8, None, None)])
 def test_phases_of_filled_cells(share, fill, holds):
-    rows = pandas.DataFrame({"kind": ["phases"], "status": ["ok"], "fill_asked": [float("nan") if fill is None else fill],
-                             "implementation": ["hybrid_dense/llt"], "scene": ["four-bar:4"], "phase_factorization": [share]})
+    shares = {f"phase_{phase}": [(1 - share) / 5] for phase in timing.PHASES} | {"phase_factorization": [share]}
+    rows = pandas.DataFrame({"kind": ["phases"], "status": ["ok"], "fill_asked": [float("nan") if fill is None else fill], "variables": [10],
+                             "implementation": ["hybrid_dense/llt"], "scene": ["four-bar:4"], "step_us": [2.0]} | shares)
     [claim] = [one for one in claims() if one.name == "filled"]
     assert claim.found(SimpleNamespace(tables=lambda part: {"tidy": rows}))[0] is holds
 
