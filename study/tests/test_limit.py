@@ -293,4 +293,4 @@ def test_a_tiny_study_on_the_real_program(tmp_path):
     assert list(first.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_chains/sweeps"]
     assert first.multiple.iloc[0] == 1 and len(held) > 5
     assert list(batches.status) in (["unsupported", "ok"], ["ok", "unsupported"], ["dropped", "dropped"])
-    assert "What code without a library is held to" in (tmp_path / "set/limit.html").read_text()
+    assert "What our own code is held to" in (tmp_path / "set/limit.html").read_text()
