@@ -303,7 +303,7 @@ def test_each_box_takes_somebody_out(page):
     press(browser, "penalty")
     assert browser.value("explorer.shown.form") == "saddle-point"
     press(browser, "saddle")
-    assert "Nobody" in said(browser)
+    assert "None of those that are left" in said(browser)
     press(browser, "reset")
     first = winner(browser)
     browser.value(f"[...document.querySelectorAll('#contenders input')].find((one) => one.value === {json.dumps(first)}).click()")
@@ -555,7 +555,7 @@ def test_a_set_without_contests_has_a_page(browser, folder, tmp_path):
     browser.complaints.clear()
     browser.open(tmp_path / "explore.html")
     browser.wait("!!window.explorer")
-    assert "Nobody" in said(browser) and browser.complaints == []
+    assert "None of those that are left" in said(browser) and browser.complaints == []
 
 
 def test_keys_and_width(page):
