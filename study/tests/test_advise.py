@@ -170,8 +170,11 @@ def test_a_given_step_is_shown_by_half_of_it_and_no_other_is_chosen():
 
 
 def test_without_time_nothing_is_made_up():
-    made, found = searched_by(lambda setting, step: None)
+    made, found = searched_by(lambda setting, step: False)
     assert made.cut and found[PENALTY].chosen is None and "no time was left" in found[PENALTY].reason
+    made, found = searched_by(lambda setting, step: setting != LOOSE and Pilot(step, "ok", square(step), 10.0 if setting == PENALTY else 16.0),
+                              lambda setting, step: setting != LOOSE and 10.0, [PENALTY, SADDLE, LOOSE])
+    assert found[PENALTY].chosen and made.cut and "no time was left" in found[LOOSE].reason, "its scheme's time says nothing of it"
 
 
 def test_a_setting_that_is_refused_or_late_is_not_tried_again():

@@ -89,17 +89,17 @@ def _pilots(advice, settings, run):
         usual = advice.found[setting].step_us()
         expected = 3e-6 * run.slowdown * duration / step * (usual if math.isfinite(usual) else advice.speeds[name])
         if expected > run.left(PILOT_SHARE):
-            return None
+            return False
         run.tell(f"error pilots: {setting.name}, step {step:g} s")
         found = run.pilot(setting, name, step, duration, min(max(1.0, run.left(TIMING_SHARE)), question.budget / 10 + 4 * expected))
         if found.status == REFUSED and not any(pilot.status == REFUSED for pilot in advice.found[setting].pilots):
             advice.never = refusal(setting, name, step, duration, run)
-        return None if found.status == "timeout" else found
+        return found.status != "timeout" and found
 
     def quick(setting, step):
-        """Time of a step, us; infinite where it is far above those of the probe; None if no time is left."""
+        """Time of a step, us; infinite where it is far above those of the probe."""
         if run.left(PILOT_SHARE) < 0:
-            return None
+            return False
         name = advice.serving(setting)[0]
         seconds = REPEATS * 1e-6 * advice.speeds[name]  # a step
         steps = QUICK if math.isnan(seconds) else max(LEAST_STEPS, round(question.budget * QUICK_SHARE / seconds))

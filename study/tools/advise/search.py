@@ -42,7 +42,8 @@ class Found:
 
 
 class Search:
-    """Fills `advice.found`. `run(setting, step)` gives a Pilot, `quick(setting, step)` a short run's time of a step, us; None if no time is left."""
+    """Fills `advice.found`. `run(setting, step)` gives a Pilot, `quick(setting, step)` a short run's time of a step, us; None if it
+    has none. Each gives False if no time is left."""
 
     def __init__(self, advice, settings, run, quick):
         self.found = advice.found = {setting: Found(setting) for setting in settings}
@@ -86,8 +87,9 @@ class Search:
             best = min((other for other in self.found.values() if other.chosen), key=self.promise, default=None)
             at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.asked.first_step), self.asked.first_step
         if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
-            one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
-                            or (parent.step_us() if parent and parent.pilots else 0.0))
+            one.quick_us = math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
+            if one.quick_us is None:
+                one.quick_us = parent.step_us() if parent and parent.pilots else 0.0
         return one.quick_us / at
 
     def _tells(self, one):
@@ -124,7 +126,7 @@ class Search:
         if after.step is None:
             self._end(one, after.chosen, after.reason)
             return
-        if (pilot := self.run(one.setting, after.step)) is None:
+        if not (pilot := self.run(one.setting, after.step)):
             self.cut = True
             self._settle(one, "no time was left for the pilots that it needs")
         elif pilot.status == "unsupported":
