@@ -13,6 +13,7 @@ from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_json, write_json
 from analysis.core.registry import ANCHOR
 from analysis.core.timing import Ranking, Ratio
+from study.tools import fragments
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, merge, need_alike
@@ -133,9 +134,25 @@ def test_what_each_set_says_and_what_they_say_alike_is_counted():
 
 def test_a_fresh_run_is_held_to_the_decided_cells(monkeypatch):
     cells = [agreed({"a": ONE, "b": Ratio(1.3, 1.2, 1.4)}, {"a": ONE, "b": Ratio(1.3, 1.2, 1.4)})]
-    for winner, inner in (("a", 1), ("b", 0)):
-        monkeypatch.setattr(agreement, "questions", lambda _: {cells[0].question: Ranking(winner, {winner: ONE})})
-        assert agreement.held(cells, None) == {"libraries": (1, inner)}
+    behind, near = Ratio(1.2, 1.1, 1.3), Ratio(1.2, 1.0, 1.4)
+    for ratios, *told in (({"a": ONE}, 1, 0), ({"b": ONE}, 0, 0), ({"b": ONE, "a": near}, 0, 0), ({"b": ONE, "a": behind}, 0, 1)):
+        monkeypatch.setattr(agreement, "questions", lambda _: {cells[0].question: Ranking(next(iter(ratios)), ratios)})
+        assert agreement.held(cells, None) == {"libraries": (1, *told)}
+
+
+def test_a_kept_fresh_run_says_whether_it_is_held():
+    run = {"processor": "P", "commit": "c" * 40, "date": "2026-01-02T03:04", "profile": "quick", "records": ["0"]}
+    record = {"sets": ["one", "two"], "run": run, "held": {"libraries": [20, 19, 0], "all": [20, 18, 1]}}
+    text = fragments._made("fresh", [record], agreement.LAYERS)
+    assert text == "- P, 2026-01-02, commit cccccccccc, profile quick, held to one and two: libraries, 19 of 20 (95 %, asked 95 %: held), " \
+                   "contradicted in 0; all, own code included, 18 of 20 (90 %, asked 95 %: not held), contradicted in 1.\n"
+    assert fragments._made("fresh", [], agreement.LAYERS) == "No run is stored.\n"
+
+
+@pytest.mark.parametrize("record", [read_json(path) for path in sorted(fragments.FRESH.glob("*.json"))])
+def test_a_kept_fresh_run_was_held_to_the_stored_pair(record):
+    kept = [read_json(ROOT / "results" / name / "set.json")["context"] for name in record["sets"]]
+    assert {one["commit"] for one in kept} == {record["run"]["commit"]} and fragments.main_set().name in record["sets"]
 
 
 def test_who_is_robust_is_among_those_that_hold_on_all():
@@ -260,6 +277,10 @@ def test_two_sets_become_a_page_and_a_table(days, tmp_path, capsys):
     merge([*days, "--fresh", "3"])
     said = capsys.readouterr().out
     assert "0 differ by machine" in said and "alike (100 %)" in said and "fresh set's winner lies in" in said
+    kept = read_json(tmp_path / "merged" / "fresh.json")
+    assert kept["sets"] == ["1", "2"] and kept["run"]["date"].startswith("2026-01-03") and kept["run"]["records"]
+    cells, inside, against = kept["held"]["libraries"]
+    assert 0 < cells == inside and against == 0  # the third day's times are those of the others
     page = (tmp_path / "merged" / "index.html").read_text()
     assert "2026-01-02" in page and "What sets of one kind of machine" in page and "days on one machine" not in said + page
     assert "with csc_ldl/uplooking, " in page and " (1)" in page

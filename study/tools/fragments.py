@@ -14,6 +14,7 @@ from study.tools.merge import agreement, machine
 
 CITATION = ROOT / "CITATION.cff"
 SWEEPS = ROOT / "results" / "sweeps"  # records of study/limit/million
+FRESH = ROOT / "results" / "fresh"    # of study/merge --fresh
 MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
 
@@ -32,9 +33,11 @@ def filled(text):
 
 def fragment(what):
     """"cases": the table of the main set, with a row about the processors that are compared; a part's name: its answers as a list;
-    "million": the records of large sweeps."""
+    "million": the records of large sweeps; "fresh": runs that are held to the stored pair."""
     if what == "million":
         return million([read_json(path) for path in sorted(SWEEPS.glob("*.json"))])
+    if what == "fresh":
+        return _made("fresh", [read_json(path) for path in sorted(FRESH.glob("*.json"))], agreement.LAYERS)
     main = main_set()
     known = site.answers_of(main)
     if what == "cases":

@@ -203,8 +203,14 @@ def shares(agreed):
 
 
 def held(agreed, fresh):
-    """{layer: (decided cells that a further set answers, of these with its winner in their set)}."""
+    """{layer: (decided cells that a further set answers; of these with its winner in their set; and where it shows that theirs is far behind)}."""
     known = questions(fresh)
-    found = gather((one.question.layer, known[one.question].winner in one.common) for one in agreed
+    found = gather((one.question.layer, _against(one.common, known[one.question])) for one in agreed
                    if one.verdict == "decided" and one.question in known)
-    return {layer: (len(inside), sum(inside)) for layer, inside in found.items()}
+    return {layer: (len(cells), *map(sum, zip(*cells))) for layer, cells in found.items()}
+
+
+def _against(common, ranking):
+    """Whether a ranking's winner is one of `common`, and whether it shows all of these to be more than EQUIVALENT behind."""
+    behind = [name in ranking.ratios and ranking.ratios[name].low > EQUIVALENT for name in common]
+    return ranking.winner in common, all(behind)

@@ -7,7 +7,7 @@ import pandas
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from analysis.core.files import ROOT, StudyError, write_text
+from analysis.core.files import ROOT, StudyError, write_json, write_text
 from analysis.core.registry import ANCHOR
 from analysis.core.site import template
 from analysis.core.style import Look, number_axis, save
@@ -63,6 +63,8 @@ def merge(arguments):
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR, day="day" in spread,
         mechanisms=agreement.shares(libraries), claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
+    if fresh:
+        write_json(options.to / "fresh.json", {"sets": [one.folder.name for one in sets], "run": _about(fresh), "held": known["held"]})
     said = {layer: [*_said([one for one in agreed if one.question.layer == layer], machines)] for layer in counts}
     print(layout(HERE / "said.txt.j2").render(known, said=said, page=options.to / "index.html"))
 
@@ -101,6 +103,13 @@ def _said(agreed, machines):
     alike = sum(one.alike for one in both)
     yield f"  {len(both)} so in all, {alike} of them alike" + (f" ({100 * alike / len(both):.0f} %)" if both else "")
     yield from (f"  {one.question.scene}, {one.question.form}: {' | '.join(one.winners)}" for one in both if not one.alike)
+
+
+def _about(fresh):
+    """What tells a run that is not stored: the digests are of its records, a column each."""
+    context = fresh.facts["context"]
+    return {"processor": context["cpu_model"], "commit": context["commit"], "date": fresh.facts["date"], "profile": fresh.facts["profile"],
+            "records": sorted(machine.origins(fresh))}
 
 
 def need_alike(first, other, builds=False):
