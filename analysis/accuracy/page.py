@@ -67,12 +67,18 @@ def of_layer(rows, layer):
     """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
     (who, often), (setting, with_it) = (next(iter(names.value_counts().items())) for names in (rows.implementation, rows.setting))
     text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
-            f"{int(rows.settled.sum())} of these are settled. The best setting is most often “{setting}”, in {with_it}.")
+            f"{int(rows.settled.sum())} of these are settled. The best setting is most often {named(setting)}, in {with_it}.")
     if len(largest := rows[rows.variables == rows.variables.max()].sort_values("required")) > 1:
         fine, coarse = largest.iloc[0], largest.iloc[-1]
         text += (f" With n = {fine.variables:.0f}, {number(fine.required)} m instead of {number(coarse.required)} m takes "
                  f"{number(fine.time / coarse.time, 2)} times as long.")
     return text
+
+
+def named(setting):
+    """A setting with what one types for it: “loose” (--tolerance 1e-6)."""
+    given = {one.name: one.typed for one in read_settings()}.get(setting)
+    return f"“{setting}”" + (f" ({given})" if given else "")
 
 
 def summary(winners):
@@ -141,10 +147,10 @@ def of_reuse(table):
     quickest, said = min(rows, key=lambda row: row["ratio"]), f"Reuse of factors, in steps of {step(pairs.STEP)}: "
     if counted := [row for row in rows if row["counted"]]:
         most = max(counted, key=lambda row: row["saved"])
-        said += (f"where factorizations are known, {most['second']} saves the most of them, {number(100 * most['saved'])} % with n = "
+        said += (f"where factorizations are known, {named(most['second'])} saves the most of them, {number(100 * most['saved'])} % with n = "
                  f"{most['variables']:.0f} (median of {most['counted']} implementations), where a step takes {number(most['ratio'], 2)} times "
                  f"that of {most['first']}; ")
-    said += (f"{quickest['second']} with n = {quickest['variables']:.0f} is the quickest: in the median over {quickest['implementations']} "
+    said += (f"{named(quickest['second'])} with n = {quickest['variables']:.0f} is the quickest: in the median over {quickest['implementations']} "
              f"implementations its step takes {number(quickest['ratio'], 2)} times that of {quickest['first']}")
     return [said + ("" if bounded(0, quickest["high"]) else ", timed in one process")
             + (", at an error that is not known." if quickest["error"] is None else ".")]

@@ -33,12 +33,12 @@ def write_part(folder, part):
         figures[name] = base64.b64encode(path.read_bytes()).decode()
     plt.close("all")
     page, others = _module(part, "page"), told(disturbance(found))
-    known = page.context(tables, view)
+    known, answers = page.context(tables, view), page.answers(tables, view)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
-        **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part),
+        **_frame(folder, part), **known, said=answers, disturbance=others, figures=figures, schema=schema.of_part(part),
         control="" if "controls" in known else said_of_controls(tables.get("controls", ()))))
     write_json(folder / part / "answers.json", {
-        "answers": page.answers(tables, view), "cases": page.cases(tables, view) if hasattr(page, "cases") else [], "disturbance": others})
+        "answers": answers, "cases": page.cases(tables, view) if hasattr(page, "cases") else [], "disturbance": others})
     for name, known in (page.files(tables, view) if hasattr(page, "files") else {}).items():
         write_json(folder / part / name, known)
 

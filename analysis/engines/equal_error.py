@@ -9,6 +9,8 @@ LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, wher
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
 CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
 SIDES = {"chains": "our code for chains", "fronts": "our general code", "library": "the fastest library", "paper": "the paper's scheme"}
+ABOUT = {"chains": CHAINS, "fronts": FRONTS, "library": "any variant on a library",
+         "paper": "any variant, in the penalty form with the automatic penalty factor or the paper's, all else as in the paper's step"}
 NOT_MEASURED, UNSERVED, UNREACHED = "not measured", "not served", "not reached"  # what reasons begin with
 NEAR = 1.3   # untimed times are this uncertain
 MOST = 2     # candidates of a side for one run of an engine

@@ -3,7 +3,7 @@ import math
 
 from analysis.core.outcomes import FINISHED, finished
 from analysis.core.text import between, number, rows_of, span
-from analysis.engines.equal_error import SIDES, compared, lacking
+from analysis.engines.equal_error import ABOUT, SIDES, compared, lacking
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import ANDREWS, DURATION_S, subject_of
@@ -15,8 +15,7 @@ TOO_LONG = ("predicted to take", "the run before it did not end")  # how study/c
 def context(tables, view):
     engines, table = tables["engines"], tables["equal_error"]
     names = list(dict.fromkeys(engines.engine[engines.status != "unavailable"]))
-    said = [one["text"] for one in answers(tables, view)] if len(table) else []
-    return {"answers": said, "says": [*of_engines(engines)], "measured": not table.empty, "setting_up": "study/setup --engines",
+    return {"says": [*of_engines(engines)], "measured": not table.empty, "setting_up": "study/setup --engines", "about": ABOUT,
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()}, "duration": DURATION_S, "worst": subject_of(ANDREWS).worst,
             "engines": {name: title(name) for name in names}, "title": title, "value": value,
             "subjects": {name: subject_of(name).title for name in dict.fromkeys(engines.subject)},

@@ -9,9 +9,9 @@ from analysis.families.rule import document, missed, summary
 from analysis.families.times import features_of
 
 # Numbers of the rule by hand: letter, meaning.
-SIGNS = {"dense": ("p", "operations of a factorization, in % of a full L's"), "per_column": ("c", "non-zeros of L a column"),
-         "saddle_dense": ("p", "operations to factorize the saddle-point matrix, in % of a dense solver's"),
-         "saddle_per_column": ("c", "non-zeros of its L a column")}
+SIGNS = {"dense": ("p", "operations to factorize the tangent, in % of those of a full one"), "per_column": ("c", "non-zeros of L per column"),
+         "saddle_dense": ("p", "operations to factorize the saddle-point matrix, in % of those of a dense solver"),
+         "saddle_per_column": ("c", "non-zeros of its L per column")}
 
 
 def context(tables, view):
@@ -54,7 +54,7 @@ def answers(tables, view):
     shares = ", ".join(f"{name} on {count}" for name, count in sorted(first.items(), key=lambda one: (-one[1], one[0])))
     found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
               f"{number(real.variables.max(), 5)}), the fastest library, or as fast to 5 %, is {shares}. On {int(real.settled.astype(bool).sum())} of the "
-              f"{len(real)} this run decides who is fastest."}]
+              f"{len(real)} this is settled."}]
     if len(tables["held"]):
         held = summary(tables["held"])
         found.append({"anchor": "rule", "text": f"The rule of mbs describe takes the least of at most three predicted times. On families that it was not fitted on, its choice takes "

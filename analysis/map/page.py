@@ -5,6 +5,8 @@ from analysis.map import carry, paper, summary
 from analysis.map.ledger import by_id, told
 from analysis.map.results import FAILURES, of
 
+FEWER = "fewer processes"  # the budget ended before the last of them
+SUMMED = ("excluded", "dropped", FEWER)  # whose reasons are not told apart
 LAST_CENTRED = 602  # variables; the harness centres stretches on the singular position up to here
 
 
@@ -54,15 +56,18 @@ def verdicts(table, names):
 
 
 def losses(results):
-    """What was not timed or may not be ranked, grouped: [{"implementation", "status", "reason", "scenes"}]; exclusions of
-    one implementation are one group, as their reasons differ in nothing but the factor."""
+    """What was not timed, timed in fewer processes, or may not be ranked, grouped: [{"implementation", "status", "reason", "scenes"}];
+    exclusions of one implementation are one group, as their reasons differ in nothing but the factor."""
     lost = results.tidy[results.tidy.status.isin([*FAILURES, "excluded", "slower", "unavailable", "dropped"])]
     lost = lost.drop_duplicates(["kind", "scene", "implementation", "status", "reason"])
-    kind = lost.reason.where(~lost.status.isin(["excluded", "dropped"]), "")
+    pairs = lambda rows: list(zip(rows.kind, rows.scene, rows.implementation))  # a process of one that others have timed is no loss of it
+    timed = set(pairs(results.tidy[results.tidy.status == "ok"]))
+    lost = lost.assign(status=lost.status.mask([pair in timed for pair in pairs(lost)] & (lost.status == "dropped"), FEWER))
+    kind = lost.reason.where(~lost.status.isin(SUMMED), "")
     rows = [{"implementation": name, "status": status, "reason": reason or "; ".join(dict.fromkeys(group.reason.iloc[[0, -1]])),
              "scenes": list(dict.fromkeys(group.scene))}
             for (name, status, reason), group in lost.groupby(["implementation", "status", kind], sort=False)]
-    return sorted(rows, key=lambda row: row["status"] in ("excluded", "unavailable", "dropped"))
+    return sorted(rows, key=lambda row: row["status"] in (*SUMMED, "unavailable"))
 
 
 def answers(tables, view):

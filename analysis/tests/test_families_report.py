@@ -209,7 +209,7 @@ def test_cases_by_hand_are_told_by_letters():
     rows = [case | {"library": "one/a", "below_dense": 26.0, "below_per_column": 20.0}, case | {"library": "one/b", "below_dense": 26.0, "least_per_column": 20.0},
             case | {"library": "one/c", "least_dense": 26.0, "least_per_column": 8.0}, case | {"library": "one/a", "least_dense": 26.0, "below_per_column": 8.0}]
     below = "one/b if p < 26 and c ≥ 20; one/c if p ≥ 26"
-    meant = " (p: operations of a factorization, in % of a full L's; c: non-zeros of L a column)"
+    meant = " (p: operations to factorize the tangent, in % of those of a full one; c: non-zeros of L per column)"
     assert page._taken(pandas.DataFrame(rows)) == below + " and c ≥ 8; else one/a" + meant
     assert page._taken(pandas.DataFrame([*rows[:2], case | {"library": "one/c", "least_dense": 26.0}])) == below + "; else one/a" + meant
     assert page._taken(pandas.DataFrame([case | {"library": "one/c"}])) == "one/c"

@@ -140,6 +140,11 @@ def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
     assert [(row["implementation"], row["status"], len(row["scenes"])) for row in rows] == [(C, "crashed", 1), (B, "excluded", 2)]
 
 
+def test_who_was_timed_in_fewer_processes_is_not_among_what_was_not_timed():
+    rows = page.losses(some(cell(A, 10, 1.0) + failed(A, 10, "dropped", "the budget") + failed(B, 10, "dropped", "the budget")))
+    assert [(row["implementation"], row["status"]) for row in rows] == [(A, "fewer processes"), (B, "dropped")]
+
+
 @pytest.mark.parametrize("rows", [[], cell(A, 10, 1.0), failed(A, 10, "crashed"),
                                   cell(A, 10, 1.0, 1.1) + cell(B, 10, 2.0, 2.1) + cell(A, 10, 3.0, fill=0.5)
                                   + failed(C, 10, "excluded", pilot=9.0)])

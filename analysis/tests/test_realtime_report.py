@@ -12,7 +12,7 @@ from analysis.realtime.tables import judge, needs_null
 from analysis.tests.tables_of import tables_of
 
 REGISTRY = Registry({"implementations": [
-    {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
+    {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": f"lib/{name}"} for name in "abc"]},
     {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/a"}]}]})
 VIEW = SimpleNamespace(registry=REGISTRY, context={"cpu_model": "A machine"}, settings={
     "duration": 5.0, "pilot": 1.3, "steps": [1e-3]})
@@ -97,9 +97,11 @@ def test_figures_page_and_answers():
     known = page.context(found, VIEW)
     assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"] == []
     texts = [one["text"] for one in page.answers(found, VIEW)]
-    assert texts[0] == ("Steps of 1 ms: Of the libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
+    assert texts[0] == ("Steps of 1 ms: Of the libraries lib/a keeps up with N = 8, n = 18 (0 of 1300 steps missed, – lost by the null process), "
                         "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
-                        "Of our own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
+                        "Of our own code own/a keeps up with N = 64, n = 130 (0 of 1300 steps missed, – lost by the null process).")
+    [case] = page.cases(found, VIEW)
+    assert case["take"].endswith("itself loses: of the libraries up to 18 variables (lib/a); of our own code up to 130 variables (own/a)")
     assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 of the deadlines of 1 ms in 1.3 s."]
 
 
@@ -109,6 +111,14 @@ def test_what_the_budget_dropped_is_counted_and_not_drawn():
         assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["lib/a"]
         assert "not drawn: 1 that the budget dropped" in [text.get_text() for text in figure.legends[0].get_texts()]
         plt.close(figure)
+
+
+def test_all_who_keep_up_with_as_many_are_named_and_who_was_not_searched_is_counted():
+    found = made(run(8, 0), run(8, 0, who="lib/b"), run(8, 0, who="lib/c", ended="dropped"))
+    [text] = [one["text"] for one in page.answers(found, VIEW)]
+    assert "lib/a keeps up with N = 8" in text and text.endswith("; so does lib/b; 1 not searched, as the budget was spent.")
+    assert page.cases(found, VIEW)[0]["take"].endswith("of the libraries up to 18 variables (lib/a, lib/b)")
+    assert page.cases(made(run(8, 0, ended="dropped")), VIEW) == []
 
 
 def judged(scene, variables, judge_us, who="own/a", mean=10.0, status="ok", number=1):
@@ -126,8 +136,8 @@ def test_judging_is_held_to_its_bound_beside_the_fastest():
     assert (large["share"], large["bound"], large["held"]) == (pytest.approx(0.03), 0.02, False)
     assert lost["share"] != lost["share"] and lost["status"] == "diverged"
     [answer] = page.answers(found, VIEW)
-    assert "not held on large." in answer["text"] and answer["anchor"] == "judging"
-    assert ": held." in page.answers(made(*runs[:4]), VIEW)[0]["text"]
+    assert "not held on large (3 %)." in answer["text"] and answer["anchor"] == "judging"
+    assert ": held; nearest to it: small, 3 %." in page.answers(made(*runs[:4]), VIEW)[0]["text"]
 
 
 def test_without_records_all_says_so():

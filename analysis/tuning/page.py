@@ -25,4 +25,4 @@ def answers(tables, view):
     if len(faster):
         least = faster.loc[faster.ratio.idxmin()]
         text += f"; the shortest is {least.alternative} on {least.scene}, {number(least.ratio)} times"
-    return [{"anchor": "", "text": text + "."}]
+    return [{"anchor": most.base.replace("/", "-"), "text": text + "."}]
