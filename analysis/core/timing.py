@@ -294,10 +294,12 @@ def median(values):
 
 def power_law(sizes, times):
     """(exponent, low, high): slope of log(time) over log(size) by least squares, with Student's interval, whose width also says how far
-    the times are from a power law; NaN for fewer than three sizes."""
-    if len(sizes) < 3:
+    the times are from a power law; two sizes have no interval, one has nothing: NaN."""
+    if len(sizes) < 2:
         return (numpy.nan,) * 3
-    from scipy.stats import linregress
     exponent = float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
+    if len(sizes) == 2:
+        return exponent, numpy.nan, numpy.nan
+    from scipy.stats import linregress
     half = special.stdtrit(len(sizes) - 2, (1 + CONFIDENCE) / 2) * linregress(numpy.log(sizes), numpy.log(times)).stderr
     return exponent, exponent - half, exponent + half

@@ -9,7 +9,7 @@ from analysis.core.schema import conform, of_part
 from analysis.families.rule import judged
 
 SCHEMES = ("penalty", "saddle-point")  # the two forms of the step; roles of their records begin with them
-LEAST = 3  # sizes, that a power is fitted to
+LEAST = 2  # sizes, that a power is fitted to
 
 
 def build(records, view):

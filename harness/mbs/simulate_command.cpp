@@ -120,17 +120,19 @@ int simulate(const SimulateOptions& options) {
   } else {
     fmt::print("{}", summary_text(json, summary));
   }
+  const auto when = [&summary](const char* word) {
+    return summary.failed_at ? fmt::format(" {} t = {:g} s", word, *summary.failed_at) : "";
+  };
   if (summary.status == RunStatus::degraded) {
-    fmt::print(stderr, "mbs: degraded: {}\n", summary.reason);
+    fmt::print(stderr, "mbs: degraded{}: {}\n", when("by"), summary.reason);
   }
   if (is_finished(summary.status)) {
     for (const std::string& warning : warnings) fmt::print(stderr, "mbs: warning: {}\n", warning);
     return 0;
   }
-  fmt::print(
-      stderr, "mbs: {} on {}: {}{}{}{}\n", variant.name, scene.name, to_string(summary.status),
-      summary.failed_at ? fmt::format(" at t = {:g} s: ", *summary.failed_at) : ": ",
-      summary.reason, warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
+  fmt::print(stderr, "mbs: {} on {}: {}{}: {}{}\n", variant.name, scene.name,
+             to_string(summary.status), when("at"), summary.reason,
+             warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
   return 1;
 }
 

@@ -70,6 +70,16 @@ TEST(Judge, NamesWhatIsLost) {
   const std::string violated = Judge(scene, initial, 0.0).judge(0.0, state);
   EXPECT_TRUE(violated.starts_with("constraints violated by")) << violated;
   EXPECT_TRUE(violated.ends_with(", A0-B0 most")) << violated;
+  Judge degraded(scene, initial, 0.0);
+  EXPECT_FALSE(degraded.is_degraded());
+  for (const int i : {1, 3}) {  // of B0 and, less, of B1
+    state = initial;
+    state.q[static_cast<std::size_t>(i)] += 5e-4 / i;
+    EXPECT_EQ(degraded.judge(0.0, state), "");
+  }
+  EXPECT_TRUE(degraded.is_degraded());
+  EXPECT_TRUE(degraded.degradation().ends_with(" (ok to 0.0001), most of A0-B0"))
+      << degraded.degradation();
   state = initial;
   for (double& velocity : state.v) velocity *= 3.0;
   EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("energy drifted by"));

@@ -117,7 +117,20 @@ TEST(Run, SaysByHowMuchItIsDegraded) {
   EXPECT_TRUE(summary.reason.starts_with("position error ")) << summary.reason;
   EXPECT_TRUE(summary.reason.ends_with(" (ok to 0.01): a shorter step may help")) << summary.reason;
   EXPECT_GT(*summary.position_error_max, AccurateBounds{}.position_error);
-  EXPECT_FALSE(summary.failed_at);
+}
+
+TEST(Run, SaysByWhenItIsDegraded) {
+  const Scene scene = load_scene("four-bar:1");
+  RunSettings settings = test::automatic_settings(scene, 10.0);
+  settings.step = chosen(scene.model, {.step = 1e-2});
+  const auto status = [&](double duration) {
+    settings.duration = duration;
+    return run(scene, test::reference(), settings).status;
+  };
+  const std::optional<double> since = run(scene, test::reference(), settings).failed_at;
+  ASSERT_TRUE(since);
+  EXPECT_EQ(status(*since), RunStatus::degraded) << *since;
+  EXPECT_EQ(status(*since - 10.0 / 16), RunStatus::ok) << *since;
 }
 
 TEST(Run, TellsThatStepsDidNotConverge) {
@@ -129,7 +142,9 @@ TEST(Run, TellsThatStepsDidNotConverge) {
   EXPECT_EQ(summary.status, RunStatus::not_converged);
   EXPECT_EQ(summary.steps, 400);
   EXPECT_EQ(summary.steps_at_limit, 400);
-  EXPECT_EQ(summary.reason, "400 of 400 steps ended at the limit of 1 passes (allowed 5 %)");
+  EXPECT_EQ(summary.reason,
+            "400 of 400 steps ended at the limit of 1 passes (allowed 5 %): a shorter step, a "
+            "larger --tolerance or --max-passes may help");
   EXPECT_FALSE(summary.failed_at);
 }
 

@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import tempfile
 from contextlib import ExitStack
 from types import SimpleNamespace
 
@@ -176,6 +177,19 @@ def test_a_node_that_another_study_holds_is_waited_for_and_then_refused(begun, m
 def test_a_full_disk_of_a_node_is_named(begun, monkeypatch):
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
     refused(begun, "less than 100 MB free for")
+
+
+def test_a_read_only_disk_of_a_node_is_named(begun, monkeypatch, tmp_path):
+    place = tmp_path / "disk"
+    place.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", place], capture_output=True).returncode != 0:
+        pytest.skip("no file system can be mounted here, as by who is not root")
+    try:
+        monkeypatch.setattr(tempfile, "tempdir", str(place))
+        refused(begun, f"first is not of this set: cannot write to {place}: Read-only file system")
+    finally:
+        subprocess.run(["umount", "-l", place], check=True)
+    assert node.own_sets(begun.folder) == [] and [*node.refusals(begun.folder)] == ["first"]
 
 
 @alone("kinds")

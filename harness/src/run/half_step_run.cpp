@@ -37,25 +37,39 @@ void HalfStepRun::advance() {
 void HalfStepRun::compare(const State& whole) {
   simulation_->get_state(state_);
   const auto keep_larger = [](double& largest, double value) {  // a NaN is infinite
-    if (!(value <= largest)) largest = std::isnan(value) ? HUGE_VAL : value;
+    if (value <= largest) return false;
+    largest = std::isnan(value) ? HUGE_VAL : value;
+    return true;
   };
   double distance = 0.0, share = 0.0;  // squared
-  auto length = lengths_.begin();
+  std::size_t place = 0, farthest = 0;
+  const auto see_share = [&](double squared, double length) {
+    if (keep_larger(share, squared / (length * length))) farthest = place;
+    ++place;
+  };
   const auto see = [&](const Vector3& off) {
-    const double squared = dot(off, off), its = *length++;
+    const double squared = dot(off, off);
     keep_larger(distance, squared);
-    keep_larger(share, squared / (its * its));
+    see_share(squared, lengths_[place]);
   };
   const auto off = [&](std::size_t i) { return whole.q[i] - state_.q[i]; };
   for_each_point(scene_, length_, see, off);
-  auto link = links_.begin();
   const auto see_link = [&](const Vector3& apart) {
-    const double its = (link++)->length;
-    keep_larger(share, dot(apart, apart) / (its * its));
+    see_share(dot(apart, apart), links_[place - lengths_.size()].length);
   };
   for_each_link(scene_.model, links_, see_link, off);
   keep_larger(error_, factor_ * std::sqrt(distance));
-  keep_larger(share_, factor_ * std::sqrt(share));
+  if (keep_larger(share_, factor_ * std::sqrt(share))) worst_ = farthest;
+}
+
+std::string HalfStepRun::farthest_off() const {
+  std::vector<std::string> names;
+  for (const Point& point : scene_.model.points()) {
+    if (!point.is_fixed()) names.push_back(point.name);
+  }
+  for (const Marker& marker : scene_.elements.markers) names.push_back(marker.name);
+  for (const ShortLink& link : links_) names.push_back(link.distance->name);
+  return names[worst_];
 }
 
 }  // namespace mbs

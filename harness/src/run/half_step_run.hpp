@@ -3,7 +3,7 @@
 
 #include <limits>
 #include <memory>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "run/scene_distance.hpp"
@@ -36,6 +36,8 @@ class HalfStepRun {
   [[nodiscard]] double position_error_max() const { return error_; }
   /// The same over the length of each point, lengths_of_points(), or of a ShortLink.
   [[nodiscard]] double share_max() const { return share_; }
+  /// Name of that point or link.
+  [[nodiscard]] std::string farthest_off() const;
 
  private:
   const Scene& scene_;
@@ -47,6 +49,7 @@ class HalfStepRun {
   double factor_;
   double error_ = std::numeric_limits<double>::quiet_NaN();  // nothing was compared
   double share_ = error_;
+  std::size_t worst_ = 0;  // whose share_ it is: a point, else a link
 };
 
 }  // namespace mbs

@@ -121,15 +121,19 @@ std::string Judge::judge(double t, const State& state) {
     spoil();
     return "the state is too large to be judged";
   }
-  const auto share = [this](std::size_t k) { return std::abs(phi_[k]) / phi_scale_[k]; };
   double violation = 0.0, relative = 0.0;  // without branches, which would be random
   for (std::size_t k = 0; k < phi_.size(); ++k) {
     violation = std::max(violation, std::abs(phi_[k]));
-    relative = std::max(relative, share(k));
+    relative = std::max(relative, std::abs(phi_[k]) / phi_scale_[k]);
   }
   const bool holds = relative <= bounds_.constraint_violation;
   so_far_.violation = std::max(so_far_.violation, violation);
-  so_far_.relative_violation = std::max(so_far_.relative_violation, relative);
+  if (relative > so_far_.relative_violation) {
+    so_far_.relative_violation = relative;
+    if (relative > AccurateBounds{}.constraint_violation) {
+      so_far_.most_violated = most_violated_row();
+    }
+  }
   const std::string lost = judge_energy(t, state);
   if (!std::isfinite(so_far_.energy.farthest)) return lost;
   if (exact_) {
@@ -146,16 +150,21 @@ std::string Judge::judge(double t, const State& state) {
     }
   }
   if (!holds) {
-    std::size_t worst = 0;
-    for (std::size_t k = 1; k < phi_.size(); ++k) {
-      if (share(k) > share(worst)) worst = k;
-    }
     return fmt::format("constraints violated by {:.2e} of their size (allowed {:g}), {} most",
-                       share(worst), bounds_.constraint_violation,
-                       row_name(scene_->model, static_cast<int>(worst)));
+                       relative, bounds_.constraint_violation,
+                       row_name(scene_->model, most_violated_row()));
   }
   const std::string turned = judge_torsion(t, state);
   return turned.empty() ? lost : turned;
+}
+
+int Judge::most_violated_row() const {
+  std::size_t most = 0;
+  const auto share = [this](std::size_t k) { return std::abs(phi_[k]) / phi_scale_[k]; };
+  for (std::size_t k = 1; k < phi_.size(); ++k) {
+    if (share(k) > share(most)) most = k;
+  }
+  return static_cast<int>(most);
 }
 
 void Judge::add_time(double time, double speed) {
@@ -249,19 +258,27 @@ void Judge::spoil() {
   if (exact_) so_far_.position_error = std::numeric_limits<double>::infinity();
 }
 
-std::string Judge::degradation() const {
+std::array<Judge::Bounded, 5> Judge::bounded() const {
   constexpr AccurateBounds accurate;
+  return {{{so_far_.position_error.value_or(0.0), accurate.position_error, "position error"},
+           {energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift"},
+           {part_drift(), accurate.energy_drift, "energy drift of a part"},
+           {so_far_.imbalance.value_or(0.0), accurate.energy_drift,
+            "energy off the work of dampers, drivers and forces by"},
+           {so_far_.relative_violation, accurate.constraint_violation, "constraint violation"}}};
+}
+
+bool Judge::is_degraded() const { return std::ranges::any_of(bounded(), &Bounded::is_beyond); }
+
+std::string Judge::degradation() const {
   std::vector<std::string> beyond;
-  const auto add = [&beyond](double value, double bound, const char* what) {
-    if (!(value <= bound))
-      beyond.push_back(fmt::format("{} {:.1e} (ok to {:g})", what, value, bound));
-  };
-  add(so_far_.position_error.value_or(0.0), accurate.position_error, "position error");
-  add(energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift");
-  add(part_drift(), accurate.energy_drift, "energy drift of a part");
-  add(so_far_.imbalance.value_or(0.0), accurate.energy_drift,
-      "energy off the work of dampers, drivers and forces by");
-  add(so_far_.relative_violation, accurate.constraint_violation, "constraint violation");
+  for (const Bounded& one : bounded()) {
+    if (one.is_beyond())
+      beyond.push_back(fmt::format("{} {:.1e} (ok to {:g})", one.what, one.value, one.bound));
+  }
+  if (bounded().back().is_beyond()) {
+    beyond.back() += ", most of " + row_name(scene_->model, so_far_.most_violated);
+  }
   return fmt::format("{}", fmt::join(beyond, ", "));
 }
 

@@ -1,6 +1,7 @@
 // Judges states from outside: constraint violation, energy, distance from the exact solution.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -77,7 +78,8 @@ class Judge {
     EnergyFigures energy;        // of the whole; its scale alone where that does not conserve it
     std::optional<double> position_error;
     double violation = 0.0;           // m^2, m
-    double relative_violation = 0.0;  // as RunBounds
+    double relative_violation = 0.0;  // as RunBounds ...
+    int most_violated = 0;            // ... of this row, where it is beyond AccurateBounds
     bool off_branch = false;
     double excess = 0.0, work = 0.0;  // J
     std::optional<double> imbalance;
@@ -95,6 +97,8 @@ class Judge {
   [[nodiscard]] bool off_branch() const { return so_far_.off_branch; }
   /// The worst figures that are beyond AccurateBounds, for people; empty if none is.
   [[nodiscard]] std::string degradation() const;
+  /// Whether one is.
+  [[nodiscard]] bool is_degraded() const;
 
   /// Largest distance of a point from the exact motion, m; none if no exact solution is known.
   [[nodiscard]] std::optional<double> position_error_max() const { return so_far_.position_error; }
@@ -108,7 +112,16 @@ class Judge {
   [[nodiscard]] double constraint_violation_max() const { return so_far_.violation; }
 
  private:
+  /// A worst figure beside its bound, and how people call it.
+  struct Bounded {
+    double value, bound;
+    const char* what;
+    bool is_beyond() const { return !(value <= bound); }
+  };
+  [[nodiscard]] std::array<Bounded, 5> bounded() const;
   std::string judge_energy(double t, const State& state);
+  /// Of the constraint that is violated most in the last judged state.
+  [[nodiscard]] int most_violated_row() const;
   /// Largest drift of a part; 0 where there are none that are judged by themselves.
   [[nodiscard]] double part_drift() const;
   /// Into moved_, in the frame of feet that are carried along.

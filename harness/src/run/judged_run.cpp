@@ -179,6 +179,7 @@ void JudgedRun::judge(Sample& sample) {
   good_.step = step;
   std::swap(good_.state, sample.after);
   good_.figures = judge_.figures();
+  note_beyond(step);
 }
 
 /// Whether the motion went on as another assembly.
@@ -308,72 +309,6 @@ void JudgedRun::take_exception() {
          fmt::format("the implementation threw: {}", printable(error.what(), 1000)),
          time(summary_.steps + 1));
   }
-}
-
-/// The outcome of a run that went to its end.
-void JudgedRun::conclude() {
-  is_over_ = true;
-  if (adds_local_errors_) {
-    summary_.local_error_sum = judge_.ahead_max() + local_errors_.worst().sum;
-  }
-  summary_.branch_doubt = watch_.doubt();
-  if (half_ && summary_.branch_doubt.empty() && !watch_.passage().empty()) {
-    summary_.branch_doubt = watch_.passage() +
-                            ", where half the step goes the same way: it does not tell whether it "
-                            "is the right one";
-  }
-  const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
-  if (share > RunBounds{}.pass_limit_share) {
-    summary_.status = RunStatus::not_converged;
-    summary_.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
-                                  summary_.steps_at_limit, steps_, settings_.step.max_passes,
-                                  100 * RunBounds{}.pass_limit_share);
-    return;
-  }
-  const auto add = [this](const std::string& reason) {
-    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += "; ";
-    summary_.reason += reason;
-  };
-  add(judge_.degradation());
-  add(beyond_estimates());
-  add(watch_.doubt());
-  if (!summary_.reason.empty()) summary_.reason += ": a shorter step may help";
-  const auto is_force = [](const Output& output) {
-    return output.kind == Output::Kind::constraint_force;
-  };
-  if (std::ranges::any_of(scene_.elements.outputs, is_force)) {
-    State state;
-    access_.get_state(state);
-    add(summary_.forces_lost = drowned_forces(scene_.model, *access_.model, settings_.step, state));
-  }
-  if (!summary_.reason.empty()) {
-    summary_.status = RunStatus::degraded;
-  } else if (!summary_.branch_doubt.empty()) {
-    summary_.status = RunStatus::plausible;
-    summary_.reason = summary_.branch_doubt;
-  } else if (!judge_.knows_exact_motion() && !half_) {
-    summary_.status = RunStatus::plausible;
-    summary_.reason = "no exact motion is known; --half-step estimates the position error";
-  }
-}
-
-std::string JudgedRun::beyond_estimates() const {
-  constexpr AccurateBounds accurate;
-  if (half_ && !std::isfinite(half_->position_error_max())) {
-    return "the run with half the step was lost, so that the position error is not known";
-  }
-  if (half_ && !(half_->share_max() <= accurate.estimated_error)) {
-    return fmt::format(
-        "estimated position error {:.1e} m at most, {:.2g} % of a length at most (ok to {:g} %)",
-        half_->position_error_max(), 100 * half_->share_max(), 100 * accurate.estimated_error);
-  }
-  if (!summary_.local_error_sum) return "";
-  const LocalErrors::Worst worst = local_errors_.worst();
-  const double share = judge_.ahead_max() / judge_.length() + worst.share;
-  if (share <= accurate.local_error) return "";
-  return fmt::format("local errors add up to {:.1e} m, {:.2g} % of the length at {} (ok to {:g} %)",
-                     *summary_.local_error_sum, 100 * share, printable(worst.point, 60),
-                     100 * accurate.local_error);
 }
 
 RunSummary JudgedRun::finish() {

@@ -95,16 +95,21 @@ class JudgedRun {
   [[nodiscard]] bool is_in_turn(long step) const;
   void balance_energy(const Sample& sample);
   void conclude();
+  void note_beyond(long step);
+  /// Whether the run so far is beyond AccurateBounds.
+  [[nodiscard]] bool is_beyond() const;
+  /// Of the point whose local errors add up to most of its length.
+  [[nodiscard]] double local_share() const;
   [[nodiscard]] std::string beyond_estimates() const;
 
   const Scene& scene_;
   RunSettings settings_;
   Observer observer_;
   Access access_;
-  long steps_;        // of the whole run
-  long interval_;     // between two judgements
+  long steps_;            // of the whole run
+  long interval_;         // between two judgements
   long next_judged_ = 0;  // step
-  long next_look_;    // step; beyond the last where there is nothing to look at
+  long next_look_;        // step; beyond the last where there is nothing to look at
   long last_look_ = 0;
   State state_;  // the last one that was looked at
   std::vector<Sample> samples_;
@@ -119,7 +124,9 @@ class JudgedRun {
   std::optional<StepAgain> again_;       // of the trapezoidal forms
   long done_again_ = 0;                  // step
   LocalErrors local_errors_;
-  std::vector<double> off_;  // n, m
+  std::vector<double> off_;             // n, m
+  long next_noted_ = 2;                 // step; half the step is compared first after one
+  std::optional<double> beyond_since_;  // s, by when it was found beyond AccurateBounds
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool adds_local_errors_;    // nothing better tells, and constraints do not fix all

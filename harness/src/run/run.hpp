@@ -57,11 +57,11 @@ struct RunSettings {
 
 struct RunSummary {
   RunStatus status = RunStatus::ok;
-  std::string reason;               ///< one line, empty if ok
+  std::string reason;  ///< one line, empty if ok
   /// The parts of `reason` of which half the step tells nothing: why the run may be on another
   /// branch; why the constraint forces among the scene's outputs are mostly rounding.
   std::string branch_doubt, forces_lost;
-  std::optional<double> failed_at;  ///< s, if not ok and it has an instant
+  std::optional<double> failed_at;  ///< s, if not ok and it has an instant; degraded: by when
   long steps = 0;                   ///< done
   long passes = 0;
   long factorizations = 0;
