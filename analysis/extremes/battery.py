@@ -47,7 +47,7 @@ def _row(record, cell, setting, limit, solutions, own, truth):
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
     error = reported if reported > error else error
-    jumps_nowhere = cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR
+    jumps_nowhere = cell.motion and failed_at and status not in FINISHED and cell.motion.clearance(failed_at) > FAR
     worth = verdict(status, error, beyond, since, ("wrong-branch",) if jumps_nowhere else cell.harmless) if (
         solutions and record.done and status not in NOT_RUN) else ""
     command = iter(record.command)  # what repeats the run, without the files that the study reads

@@ -146,6 +146,7 @@ TEST(Judge, ALightPartIsJudgedByItsOwnEnergy) {
   EXPECT_EQ(judge.degradation(), "");
   EXPECT_EQ(judge.judge(0.2, state(1.02)), "");
   EXPECT_TRUE(judge.degradation().starts_with("energy drift of a part")) << judge.degradation();
+  EXPECT_TRUE(judge.degradation().ends_with(", that of light")) << judge.degradation();
   EXPECT_LT(*judge.energy_drift_max(), 1e-6);
   EXPECT_TRUE(judge.judge(0.3, state(1.2)).starts_with("energy of a part drifted"));
 }

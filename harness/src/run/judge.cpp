@@ -17,6 +17,7 @@
 #include "model_math/known_motion.hpp"
 #include "model_math/turning.hpp"
 #include "model_math/vector3.hpp"
+#include "printable.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -272,12 +273,22 @@ bool Judge::is_degraded() const { return std::ranges::any_of(bounded(), &Bounded
 
 std::string Judge::degradation() const {
   std::vector<std::string> beyond;
-  for (const Bounded& one : bounded()) {
-    if (one.is_beyond())
-      beyond.push_back(fmt::format("{} {:.1e} (ok to {:g})", one.what, one.value, one.bound));
+  const auto figures = bounded();
+  const auto add = [&](std::size_t figure, const std::string& where = "") {
+    const auto& [value, bound, what] = figures[figure];
+    beyond.push_back(fmt::format("{} {:.1e} (ok to {:g}){}", what, value, bound, where));
+  };
+  for (const std::size_t figure : {0, 1}) {
+    if (figures[figure].is_beyond()) add(figure);
   }
-  if (bounded().back().is_beyond()) {
-    beyond.back() += ", most of " + row_name(scene_->model, so_far_.most_violated);
+  if (figures[2].is_beyond()) {
+    const auto part = std::ranges::max_element(so_far_.parts, {}, &EnergyFigures::drift);
+    const auto place = static_cast<std::size_t>(part - so_far_.parts.begin());
+    add(2, ", that of " + printable(parts_->name(place), 60));
+  }
+  if (figures[3].is_beyond()) add(3);
+  if (figures[4].is_beyond()) {
+    add(4, ", most of " + row_name(scene_->model, so_far_.most_violated));
   }
   return fmt::format("{}", fmt::join(beyond, ", "));
 }

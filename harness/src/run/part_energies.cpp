@@ -125,7 +125,8 @@ PartEnergies::PartEnergies(const Model& model, const State& initial, double star
     Model own = model_of(model, members, cols);
     if (!never_gains(own)) continue;
     const bool loses = !is_conservative(own);
-    Part part{std::move(own), std::move(cols), loses, {}, {}};
+    const std::string& name = model.points()[static_cast<std::size_t>(members.front())].name;
+    Part part{std::move(own), name, std::move(cols), loses, {}, {}};
     take(initial, part);
     const double potential = potential_energy(part.model, start, part.q);
     start_.push_back({.reference = kinetic_energy(part.model, part.v) + potential,

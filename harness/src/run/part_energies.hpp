@@ -1,6 +1,7 @@
 // Energy of a scene, and of the parts that conserve it where the whole scene does not.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -47,10 +48,13 @@ class PartEnergies {
 
   [[nodiscard]] const std::vector<EnergyFigures>& start() const { return start_; }
   void judge(double t, const State& state, std::vector<EnergyFigures>& figures);
+  /// The name of its first point.
+  [[nodiscard]] const std::string& name(std::size_t part) const { return parts_[part].name; }
 
  private:
   struct Part {
     Model model;  // of its points alone, without constraints
+    std::string name;
     std::vector<int> cols;
     bool loses = false;  // by dampers alone
     std::vector<double> q, v;
