@@ -95,7 +95,7 @@ function fillMap(found) {
   const here = {n: found.asked.n, fill: found.asked.fill ?? found.features?.fill ?? found.near[0]?.contest.fill};
   const width = Math.max(280, Math.min(900, place("map").clientWidth)), list = [...wins].sort((a, b) => b[1] - a[1]);
   const label = `Map of the fastest of those that are left, over n and fill: ${list.map(([name, count]) => `${name} on ${count}`).join(", ")}`;
-  const caption = "A circle is a mechanism, a square the four-bar with its own or artificial fill; inside: another that is as fast; empty: not decided. "
+  const caption = "A circle is a mechanism, a square the four-bar with its own or artificial fill; inside: another that is as fast; empty: not decided. The "
     + `${found.form} form, ${machineOf(found.set, DATA.sets[0])}, ${found.set.date.slice(0, 10)}. A click takes a mark as the case.`;
   place("map").replaceChildren(...(marks.length ? [drawMap(marks, here, width, label), element("figcaption", {}, caption)] : []));
   place("winners").replaceChildren(element("ul", {}, ...list.map(([name, count]) => element("li", {},

@@ -248,7 +248,7 @@ def test_the_answers_name_both_layers_and_what_reuse_saves(found):
     said = [one["text"] for one in page.answers(made, seen)]
     assert said[0].startswith("Of the libraries lib_a/fast is fastest for 2 of 2 required errors")
     assert said[1].startswith("Of all, code without a library included, own/code is fastest")
-    assert any("in steps of 1.25 ms: where factorizations are known, every-step saves the most of them, 50 %" in one for one in said)
+    assert any("in steps of 1.25 ms: where factorizations are known, “every-step” (--tangent every-step) saves the most of them, 50 %" in one for one in said)
     lost = made["pairs"].assign(second_factorizations=numpy.where(made["pairs"].variables > 50, numpy.nan, made["pairs"].second_factorizations),
                                 ratio=numpy.where(made["pairs"].variables > 50, 0.5, 1.1))
     [text] = page.of_reuse(lost)

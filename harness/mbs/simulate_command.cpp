@@ -111,7 +111,9 @@ int simulate(const SimulateOptions& options) {
   require_duration(scene, settings);
   std::vector<std::string> warnings = options.step.warnings(model, settings.step);
   add_judging_warning(scene, settings, warnings);
-  if (std::string forces = force_warning(scene); !forces.empty()) warnings.push_back(forces);
+  for (const std::string& one : {force_warning(scene), projection_warning(scene, settings.step)}) {
+    if (!one.empty()) warnings.push_back(one);
+  }
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);
   json["warnings"] = warnings;

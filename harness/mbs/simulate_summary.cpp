@@ -109,11 +109,13 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
       json["steps"].get<long>(), json["steps"].get<double>() * json["step"].get<double>(), passes,
       factorizations == passes ? "" : fmt::format(" and {:.3f} factorizations", factorizations),
       json["steps_at_limit"].get<long>());
-  text +=
-      fmt::format("  position error max     {}\n",
-                  figure(summary.position_error_max, " m",
-                         "not known: this scene has no exact motion (--half-step estimates it)"));
-  if (summary.position_error_estimate) {
+  const bool estimated = summary.position_error_estimate.has_value();
+  text += fmt::format("  position error max     {}\n",
+                      figure(summary.position_error_max, " m",
+                             estimated ? "not known: this scene has no exact motion"
+                                       : "not known: this scene has no exact motion (--half-step "
+                                         "estimates it)"));
+  if (estimated) {
     text += fmt::format("  estimated error max    {}\n",
                         figure(summary.position_error_estimate, " m, by half the step"));
   }
