@@ -133,7 +133,15 @@ int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& re
   benchmark::ClearRegisteredBenchmarks();
   benchmark::Shutdown();
   output.finish(file.complete());
-  return operations.failed() || batches.failed() ? 1 : 0;
+  bool failed = operations.failed() || batches.failed();
+  const PlannedScene* last = nullptr;
+  for (const PlannedCell& cell : cells) {
+    if (!request.batch || std::exchange(last, cell.scene) == cell.scene) continue;
+    if (batches.timed(cell.scene)) continue;
+    fmt::print(stderr, "mbs: {}: nothing was timed: no row has a time\n", cell.scene->scene.name);
+    failed = true;
+  }
+  return failed ? 1 : 0;
 }
 
 /// What about the settings is likely to spoil the motion, once a scene.

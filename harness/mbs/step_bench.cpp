@@ -37,6 +37,18 @@ double machine_load() {
   return ::getloadavg(&load, 1) == 1 ? load : -1.0;
 }
 
+/// Why nobody but the control was timed; empty if somebody was, or if nobody else was asked for.
+std::string why_nobody(const SceneResult& scene) {
+  std::string first;
+  long others = -1;
+  for (const ContenderResult& one : scene.contenders) {
+    if (one.cell->control) continue;
+    if (one.timed()) return "";
+    if (others++ < 0) first = fmt::format("{}: {}", one.cell->variant_name(), one.failure);
+  }
+  return others > 0 ? fmt::format("{}; and {} more", first, others) : first;
+}
+
 /// Where the rows of scenes go, while the run goes on.
 class StepReport {
  public:
@@ -62,6 +74,10 @@ class StepReport {
       fmt::print("{}", summary_ ? scene_summary(scene, machine_load()) : scene_table(scene));
     }
     std::fflush(stdout);
+    if (const std::string why = why_nobody(scene); !why.empty()) {
+      fmt::print(stderr, "mbs: {}: nothing was timed: {}\n", scene.scene->scene.name, why);
+      failed_ = true;
+    }
   }
 
   /// Whether the file is complete.

@@ -299,6 +299,19 @@ TEST(BenchProgram, WhatIsUnsupportedIsARowAndNoFailure) {
   EXPECT_LT(unsupported, static_cast<int>(json.at("benchmarks").size()) - 1);
 }
 
+TEST(BenchProgram, ASceneOnWhichNobodyIsTimedIsAFailure) {
+  const std::string few = " --steps 2 --benchmark_min_time=0 --benchmark_repetitions=1",
+                    joints = " '" MBS_ROOT "/harness/scenes/examples/spatial_joints.json' ";
+  for (const char* words : {"--implementation compiled_chains/sweeps", "--patience 1e-9",
+                            "--implementation null,compiled_chains/sweeps",
+                            "--implementation csc_ldl/uplooking --batch"}) {
+    SCOPED_TRACE(words);
+    const auto run = test::run_mbs("bench four-bar:1" + joints + words + few);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.errors.find(": nothing was timed: "), std::string::npos) << run.errors;
+  }
+}
+
 TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("--benchmark_fliter=x", "--benchmark_fliter");
   expect_refusal("--benchmark_filter", "--benchmark_filter");
@@ -372,7 +385,8 @@ TEST(BenchProgram, WritesToWhatIsOpenAlready) {
     EXPECT_EQ(run.status, 0) << run.errors;
     EXPECT_NE(run.output.find("benchmarks"), std::string::npos) << run.output;
     if (*end != '\0') continue;
-    EXPECT_NE(run.output.find("\"context\""), std::string::npos) << run.output;  // none over the other
+    EXPECT_NE(run.output.find("\"context\""), std::string::npos)
+        << run.output;  // none over the other
     EXPECT_NE(run.output.find(" variables, "), std::string::npos) << run.output;
   }
 }

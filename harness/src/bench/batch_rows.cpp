@@ -130,6 +130,7 @@ void BatchRows::run(const PlannedCell& cell, int sets, benchmark::State& state) 
     state.counters["variables"] = planned.scene.model.variables();
     state.counters["constraints"] = planned.scene.model.constraints();
     state.counters["fill_percent"] = planned.fill_percent;
+    timed_.insert(&planned);
   } catch (const std::exception&) {
     const std::string why = failure_text();
     // What an implementation does not offer is an answer, as in the gate.

@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,14 @@ class BatchRows {
   void add(const std::vector<PlannedCell>& cells, int sets);
   /// Whether a row that has run failed.
   [[nodiscard]] bool failed() const { return failed_; }
+  /// Whether a row of the scene was timed.
+  [[nodiscard]] bool timed(const PlannedScene* scene) const { return timed_.contains(scene); }
 
  private:
   void run(const PlannedCell& cell, int sets, benchmark::State& state);
 
   bool failed_ = false;
+  std::set<const PlannedScene*> timed_;
 };
 
 }  // namespace mbs
