@@ -252,11 +252,13 @@ TEST(Isolate, LimitsMemory) {
       return text.substr(0, 1);
     };
   };
-  const IsolationLimits limits{.seconds = 20, .bytes = std::size_t{256} << 20};
+  const IsolationLimits limits{.seconds = 20,
+                               .bytes = test::memory_of_this() + (std::size_t{256} << 20)};
   EXPECT_EQ(run_isolated(take(std::size_t{64} << 20), limits).fate, Fate::finished);
-  const Isolated result = run_isolated(take(std::size_t{512} << 20), limits);
+  const Isolated result = run_isolated(take(limits.bytes), limits);
   EXPECT_EQ(result.fate, Fate::out_of_memory);
-  EXPECT_EQ(result.reason, "needs more than the memory limit of 256 MiB");
+  EXPECT_EQ(result.reason,
+            "needs more than the memory limit of " + std::to_string(limits.bytes >> 20) + " MiB");
 }
 
 TEST(Isolate, LeaksNoDescriptorsAndNoProcesses) {

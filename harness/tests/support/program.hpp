@@ -1,6 +1,7 @@
 // Runs the program `mbs` as its users do.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace mbs::test {
@@ -23,5 +24,8 @@ std::string temporary_path(const std::string& name);
 
 /// The whole text of a file; empty if there is none.
 std::string file_text(const std::string& path);
+
+/// Bytes of address space that this process has by now, and a child from its start on.
+std::size_t memory_of_this();
 
 }  // namespace mbs::test
