@@ -8,13 +8,18 @@
 #include <mbs/stepper.hpp>
 #include <optional>
 #include <string>
-#include <type_traits>
+
+#include "arguments.hpp"
 
 namespace py = pybind11;
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using mbs::python::Array;
+using mbs::python::as;
+using mbs::python::options_of;
+using mbs::python::scene_of;
+using mbs::python::scenes_of;
 
 /// A read-only array over numbers that `owner` has: no copy.
 py::array view(std::span<const double> numbers, py::handle owner) {
@@ -25,81 +30,6 @@ py::array view(std::span<const double> numbers, py::handle owner) {
 
 std::vector<std::string> list(std::span<const std::string> names) {
   return {names.begin(), names.end()};
-}
-
-std::string type_name(const py::object& type) { return type.attr("__name__").cast<std::string>(); }
-
-/// What a `Value` is called in messages.
-template <class Value>
-std::string wanted() {
-  using Plain = std::remove_cvref_t<Value>;
-  if constexpr (std::is_same_v<Plain, bool>) {
-    return "True or False";
-  } else if constexpr (std::is_same_v<Plain, double>) {
-    return "a number";
-  } else if constexpr (std::is_integral_v<Plain>) {
-    return "a whole number";
-  } else if constexpr (std::is_same_v<Plain, std::string>) {
-    return "a text";
-  } else if constexpr (std::is_same_v<Plain, Array>) {
-    return "an array of numbers";
-  } else {
-    return "an mbs." + type_name(py::type::of<Plain>());
-  }
-}
-
-/// `given` as a `Value`. pybind11's own refusal is many lines.
-template <class Value>
-Value as(const char* name, const py::object& given) {
-  try {
-    return given.cast<Value>();
-  } catch (const py::cast_error&) {
-  } catch (const py::reference_cast_error&) {  // None
-  } catch (const py::error_already_set&) {  // numpy's own
-  }
-  throw mbs::Refused(std::string(name) + ": found " + type_name(py::type::of(given)) +
-                     ", allowed is " + wanted<Value>());
-}
-
-/// What `work` raises, as Refused.
-template <class Work>
-std::string text_of(Work work) {
-  try {
-    return work().template cast<std::string>();
-  } catch (const py::error_already_set& error) {
-    throw mbs::Refused("scene: " + py::str(error.value()).cast<std::string>());
-  }
-}
-
-/// Numpy's arrays and numbers, for json.dumps().
-py::object plain(const py::object& value) {
-  if (py::hasattr(value, "tolist")) return value.attr("tolist")();
-  throw py::type_error("found " + type_name(py::type::of(value)) +
-                       ", allowed is what JSON has, and numpy's arrays and numbers");
-}
-
-mbs::SceneDocument scene_of(const py::object& source, const std::string& name) {
-  if (py::isinstance<mbs::SceneDocument>(source)) return source.cast<mbs::SceneDocument>();
-  if (py::isinstance<py::dict>(source)) {
-    const auto dumps = py::module_::import("json").attr("dumps");
-    return mbs::SceneDocument::parse(
-        text_of([&] { return dumps(source, py::arg("default") = py::cpp_function(plain)); }), name);
-  }
-  const auto path = py::module_::import("os").attr("fspath");
-  return mbs::SceneDocument::load(text_of([&] { return path(source); }));
-}
-
-std::vector<mbs::SceneDocument> scenes_of(const py::object& sources) {
-  const bool is_one = py::isinstance<mbs::SceneDocument>(sources) ||
-                      py::isinstance<py::dict>(sources) || py::isinstance<py::str>(sources);
-  if (is_one || !py::isinstance<py::iterable>(sources))
-    throw mbs::Refused("scenes: found " + type_name(py::type::of(sources)) +
-                       ", allowed is a list of scenes");
-  std::vector<mbs::SceneDocument> scenes;
-  for (const py::handle one : sources)
-    scenes.push_back(scene_of(py::reinterpret_borrow<py::object>(one), "scene"));
-  if (scenes.empty()) throw mbs::Refused("scenes: found none, allowed is one or more");
-  return scenes;
 }
 
 std::string name_of(mbs::StepStatus status) {
@@ -220,35 +150,6 @@ py::array run_lanes(mbs::BatchStepper& self, const py::object& of_steps,
   return table;
 }
 
-/// The settings by keyword.
-mbs::StepperOptions options_of(const py::object& implementation, const py::kwargs& given) {
-  mbs::StepperOptions options{as<std::string>("implementation", implementation)};
-  std::string names;
-  py::ssize_t taken = 0;
-  const auto take = [&]<class Value>(const char* name, Value& setting) {
-    names += std::string(names.empty() ? "" : ", ") + name;
-    if (!given.contains(name)) return;
-    setting = as<Value>(name, given[name]);
-    ++taken;
-  };
-  mbs::StepSettings& settings = options.settings;
-  take("step", settings.step);
-  take("penalty", settings.penalty);
-  take("tolerance", settings.tolerance);
-  take("max_passes", settings.max_passes);
-  take("scheme", settings.scheme);
-  take("multipliers", settings.multipliers);
-  take("tangent", settings.tangent);
-  take("projections", settings.projections);
-  take("projections_every", settings.projections_every);
-  take("precision", settings.precision);
-  take("geometric_stiffness", settings.geometric_stiffness);
-  if (taken == static_cast<py::ssize_t>(given.size())) return options;
-  throw mbs::Refused("settings: found " +
-                     py::str(", ").attr("join")(py::list(given)).cast<std::string>() +
-                     ", allowed are " + names);
-}
-
 constexpr const char* kSettings =
     "\n\nSettings, by keyword: step (s), penalty, tolerance (m; of both 0 is chosen from the "
     "scene),\n"
@@ -308,7 +209,10 @@ PYBIND11_MODULE(_mbs, module) {
 
   using mbs::SceneDocument;
   py::class_<SceneDocument>(module, "Scene", "A scene, whose numbers may be changed.")
-      .def(py::init(&scene_of), py::arg("source"), py::arg("name") = "scene",
+      .def(py::init([](const py::object& source, const py::object& name) {
+             return scene_of(source, as<std::string>("name", name));
+           }),
+           py::arg("source"), py::arg("name") = "scene",
            "A scene: a path, a name (\"vehicle:4\"), a document as a dict, or another scene to "
            "copy.")
       .def(
@@ -405,7 +309,8 @@ PYBIND11_MODULE(_mbs, module) {
           py::arg("input"), py::arg("value"), py::arg("rate") = 0.0, py::arg("acceleration") = 0.0,
           "What the input of this name is from the end of the next step on. What moves a point or "
           "a\n"
-          "constraint (m, rad) needs its rate (per s) and acceleration (per s^2) too, anew for each "
+          "constraint (m, rad) needs its rate (per s) and acceleration (per s^2) too, anew for "
+          "each "
           "step.")
       .def(
           "step",
@@ -423,7 +328,8 @@ PYBIND11_MODULE(_mbs, module) {
            "`every`-th step: after steps 3, 6 and 9 of 10 for every=3. Fewer rows where a step "
            "fails,\n"
            "unless that is after the last row.\n"
-           "`inputs`: (steps, inputs) values, whose rates are 0, or (steps, inputs, 3) with rates and "
+           "`inputs`: (steps, inputs) values, whose rates are 0, or (steps, inputs, 3) with rates "
+           "and "
            "accelerations.")
       .def_property_readonly(
           "t", [](Stepper& self) { return self.state().t; }, "Now, s.")
@@ -484,6 +390,7 @@ PYBIND11_MODULE(_mbs, module) {
           py::arg("lane"), py::arg("input"), py::arg("value"), py::arg("rate") = 0.0,
           py::arg("acceleration") = 0.0, "As Stepper.set(), for a lane, from 0 on.")
       .def("run", run_lanes, py::arg("steps"), py::arg("every") = 1,
-           "(lanes, rows, 1 + outputs): t and the outputs after each `every`-th step. Outputs are not a\n"
+           "(lanes, rows, 1 + outputs): t and the outputs after each `every`-th step. Outputs are "
+           "not a\n"
            "number from where a lane fails.");
 }

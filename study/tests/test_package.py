@@ -165,9 +165,11 @@ wrong = {
     "scenes: found Scene": lambda: mbs.BatchStepper(car),
     "threads: found 0": lambda: mbs.simulate_all(two, 1.0, threads=0), "lanes: found 0": lambda: mbs.simulate_all(two, 1.0, lanes=0),
     "scene: found set": lambda: mbs.Scene({"points": {1}}), "scene: expected str": lambda: mbs.Scene(3),
+    "scene: found str, allowed is a text": lambda: mbs.Scene("\\ud800"), "name: found int": lambda: mbs.Scene({}, name=3),
     "settings: found stepp, allowed are step, ": lambda: mbs.Stepper(car, stepp=1e-3),
     "scheme: found str, allowed is an mbs.Scheme": lambda: mbs.Stepper(car, scheme="rattle"),
     "max_passes: found float": lambda: mbs.Stepper(car, max_passes=1.5), "step: found str": lambda: mbs.Stepper(car, step="1e-3"),
+    "max_passes: found int, allowed is a whole number of up to 2147483647": lambda: mbs.Stepper(car, max_passes=2**40),
     "implementation: found int": lambda: mbs.Stepper(car, 1),
     "csc_ldl/uplooking: it does not offer scheme multistep6":
         lambda: mbs.Stepper("four-bar:3", "csc_ldl/uplooking", scheme=mbs.Scheme.multistep6),
