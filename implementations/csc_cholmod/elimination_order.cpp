@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <compare>
 #include <cstddef>
-#include <numeric>
+#include <iterator>
+#include <set>
 #include <utility>
 
 namespace mbs::csc_cholmod {
@@ -103,26 +104,38 @@ Filled in_order(int n, const std::vector<Position>& positions, const std::vector
 Filled in_rounds(int n, const std::vector<Position>& positions, const Before& before) {
   QuotientGraph graph(n, positions);
   Waiting waiting(before);
-  std::vector<int> left(n), degree(n), order;
-  std::iota(left.begin(), left.end(), 0);
-  for (int v : left) degree[v] = graph.degree(v);
-  std::vector<int> touched(n);  // last round that eliminated a node or a neighbour of it
-  for (int round = 1; !left.empty(); ++round) {
-    int least = n;
-    for (int v : left) {
-      if (waiting.may_go(v)) least = std::min(least, degree[v]);
-    }
+  std::vector<int> degree(n), order, changed;
+  std::set<std::pair<int, int>> ready;  // (degree, node) of those that may go
+  for (int v = 0; v < n; ++v) {
+    degree[v] = graph.degree(v);
+    if (waiting.may_go(v)) ready.emplace(degree[v], v);
+  }
+  std::vector<int> touched(n);  // last round that eliminated a neighbour
+  for (int round = 1; !ready.empty(); ++round) {
+    const int least = ready.begin()->first;
     const std::size_t first = order.size();
-    for (int v : left) {
-      if (touched[v] == round || degree[v] > least || !waiting.may_go(v)) continue;
-      for (int w : graph.eliminate(v)) touched[w] = round;
+    for (auto next = ready.begin(); next != ready.end() && next->first == least;) {
+      const int v = next->second;
+      if (touched[v] == round) {
+        ++next;
+        continue;
+      }
+      next = ready.erase(next);
+      for (int w : graph.eliminate(v)) {
+        if (std::exchange(touched[w], round) != round) changed.push_back(w);
+      }
       order.push_back(v);
     }
-    for (std::size_t k = first; k < order.size(); ++k) waiting.eliminate(order[k]);
-    std::erase_if(left, [&](int v) { return graph.gone(v); });
-    for (int v : left) {
-      if (touched[v] == round) degree[v] = graph.degree(v);
+    for (std::size_t k = first; k < order.size(); ++k) {
+      waiting.eliminate(order[k]);
+      std::ranges::copy(waiting.after(order[k]), std::back_inserter(changed));
     }
+    for (int v : changed) {
+      ready.erase({degree[v], v});
+      degree[v] = graph.degree(v);
+      if (waiting.may_go(v)) ready.emplace(degree[v], v);
+    }
+    changed.clear();
   }
   return {order, graph.members()};
 }
