@@ -46,7 +46,7 @@ void remember(const std::string& path) {
   Name* free_place = std::ranges::find_if(unfinished, [](const Name& n) { return n[0] == '\0'; });
   if (free_place == unfinished.end() || path.size() >= free_place->size()) return;
   std::memcpy(free_place->data(), path.c_str(), path.size() + 1);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU}) {
     if (::signal(signal, remove_and_die) == SIG_IGN) ::signal(signal, SIG_IGN);  // nohup
   }
 }

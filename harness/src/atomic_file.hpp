@@ -14,8 +14,9 @@ bool is_open_already(const std::string& path);
 std::string partial_begin(const std::string& name);
 
 /// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
-/// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices and what
-/// is open already (/dev/stdout) written to directly. Up to four at a time.
+/// stays, also when a signal from outside ends the program (a reader that left, a limit of time).
+/// Links are followed, devices and what is open already (/dev/stdout) written to directly. Up to
+/// four at a time.
 ///
 ///   AtomicFile file("summary.json");
 ///   file.stream() << text;

@@ -101,8 +101,8 @@ TEST_F(SimulateOutput, WritesBothTables) {
 TEST_F(SimulateOutput, AFileStaysWhereNothingIsSimulated) {
   ASSERT_EQ(simulate(scene() + " --duration 0.1" + to("--output", "out.csv")).status, 0);
   const std::string before = test::file_text(folder_.file("out.csv"));
-  const auto run = test::run_mbs("simulate --implementation minimal_dense --scheme rattle " + scene() +
-                                 to("--output", "out.csv"));
+  const auto run = test::run_mbs("simulate --implementation minimal_dense --scheme rattle " +
+                                 scene() + to("--output", "out.csv"));
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.output.find("unsupported"), std::string::npos) << run.output << run.errors;
   EXPECT_EQ(test::file_text(folder_.file("out.csv")), before);
@@ -125,6 +125,15 @@ TEST_F(SimulateOutput, NamesMayBeAsLongAsTheSystemAllows) {
     EXPECT_EQ(read_table(folder_.file(name)).rows.size(), 9u);
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}), 4);
+}
+
+TEST_F(SimulateOutput, LeavesNothingBehindWhereItsReaderLeaves) {
+  const std::string command =
+      "'" MBS_CONTROLS "' simulate --implementation control/reference --duration 5 --step 1e-3 " +
+      scene() + to("--trajectory", "all.csv") +
+      " --output /dev/stdout | head -n 1";  // more than a pipe holds
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}), 1);
 }
 
 TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
@@ -151,7 +160,8 @@ TEST_F(SimulateOutput, RefusesOneFileForBoth) {
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.errors.find("same file"), std::string::npos) << run.errors;
   const std::string one(300, 'a'), other(300, 'b');  // longer than a name may be
-  const auto longer = simulate(scene() + to("--output", one.c_str()) + to("--trajectory", other.c_str()));
+  const auto longer =
+      simulate(scene() + to("--output", one.c_str()) + to("--trajectory", other.c_str()));
   EXPECT_NE(longer.errors.find("too long"), std::string::npos) << longer.errors;
   const auto empty = simulate(scene() + " --output ''");
   EXPECT_EQ(empty.status, 2);
