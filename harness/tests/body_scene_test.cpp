@@ -48,9 +48,10 @@ std::string planar(const std::string& rest) {
 
 TEST(BodyScene, ThinRodAsBodyIsTheRod) {
   const std::string springs = R"("springs": [{"between": ["A", "G"]}, {"between": ["B", "G"]}])";
-  const SceneData body = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 6, "centre": [1, 0],
+  const SceneData body =
+      data_of_text(planar(R"("bodies": [{"name": "K", "mass": 6, "centre": [1, 0],
     "inertia": 2, "points": {"A": [0, 0], "B": [2, 0]}}], )" +
-                                         springs));
+                          springs));
   const SceneData rod =
       data_of_text(planar(R"("rods": [{"between": ["A", "B"], "mass": 6}], )" + springs));
   ASSERT_EQ(body.model.mass.size(), rod.model.mass.size());  // nothing between x and y
@@ -97,7 +98,8 @@ TEST(BodyScene, PointsOfOutputsAreMarkersAndCostNothing) {
 }
 
 TEST(BodyScene, MassAtAMarkerJoinsTheBody) {
-  const SceneData with_mass = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 2, "inertia": 1,
+  const SceneData with_mass =
+      data_of_text(planar(R"("bodies": [{"name": "K", "mass": 2, "inertia": 1,
     "points": {"A": [0, 0], "B": [2, 0], "C": [0, 1]}}], "masses": [{"point": "C", "mass": 3}],
     "springs": [{"between": ["B", "G"]}, {"between": ["A", "G"]}])"));
   const SceneData merged = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 5,
@@ -140,7 +142,8 @@ TEST(BodyScene, DrivenPointsLeaveTheirMassInQ) {
 
 TEST(BodyScene, PosesAndVelocitiesSpread) {
   // Only the first body says where it is and how it turns; its neighbour hangs on it.
-  const SceneData data = data_of_text(R"({"points": [{"name": "O", "position": [1, 2], "fixed": true},
+  const SceneData data =
+      data_of_text(R"({"points": [{"name": "O", "position": [1, 2], "fixed": true},
       {"name": "P", "position": [1, 3.5]}],
     "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"O": [0, 0], "E": [1, 0]},
                 "pose": {"angle": 1.5707963267948966}, "angular_velocity": 2},
@@ -178,6 +181,12 @@ TEST(BodyScene, PosesTurnAsTheirPointsShow) {
   for (const char* pose : {"{}", R"({"position": [1, 2]})"})
     expect_at(place_of_E("", pose), 2.0, 3.0);
   EXPECT_THROW(place_of_E(up, R"({"angle": 0})"), UsageError);
+  // The pose's position and one point.
+  const SceneData data = data_of_text(R"({"points": [{"name": "B", "position": [1, 4]},
+      {"name": "G", "position": [3, 2], "fixed": true}],
+    "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"B": [2, 0], "E": [1, 1]}, "pose": {"position": [1, 2]}}],
+    "springs": [{"between": ["B", "G"]}, {"between": ["E", "G"]}]})");
+  expect_at(point_named(data.model, "E").position, 0.0, 3.0);
 }
 
 TEST(BodyScene, BodiesTurnAboutWhatIsHeldOrTheirCentre) {
@@ -369,12 +378,14 @@ TEST(BodyScene, ExamplesHaveNoRedundantRows) {
 /// A force that changes in time has a hidden point, which is fixed in the draft and lies anywhere.
 TEST(BodyScene, VectorsBeginAtTheOriginWhateverPushes) {
   const auto of_force = [](const std::string& force) {
-    return data_of_text(R"({"dimension": 3, "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1], "pose": {"position": [0, 0, 0]},
+    return data_of_text(
+        R"({"dimension": 3, "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1], "pose": {"position": [0, 0, 0]},
       "points": {"A": [0, 0, 0.1], "B": [1, 0, 0]}, "vectors": {"u": [0, 0, 1], "w": [0, 1, 0]}}],
       "vectors": [{"name": "g", "direction": [1, 0, 0], "fixed": true}],
       "constraints": [{"name": "c", "type": "perpendicular", "first": "w", "second": "g"},
         {"name": "d", "type": "perpendicular", "first": "u", "second": "g"}],
-      "forces": [{"point": "A", "force": [0, )" + force + ", 0]}]}");
+      "forces": [{"point": "A", "force": [0, )" +
+        force + ", 0]}]}");
   };
   for (const char* force : {"5", R"({"polynomial": [5, 1]})"}) {
     const SceneData data = of_force(force);

@@ -52,7 +52,9 @@ class Placement {
   /// else none.
   [[nodiscard]] Matrix3 rotation(const DraftBody& body) const {
     if (body.rotation) return rotation_matrix(*body.rotation);
-    const auto fitted = fit_pose(sightings(body, true), draft_.dimension, body.size);
+    std::vector<Sighting> seen = sightings(body, true);
+    if (body.position) seen.push_back({{}, *body.position});
+    const auto fitted = fit_pose(seen, draft_.dimension, body.size);
     return fitted ? fitted->R : Pose{}.R;
   }
 
@@ -143,8 +145,8 @@ class Placement {
         if (other.position) known += (known.empty() ? "" : ", ") + printable(other.name);
       }
       body.node.fail(
-          fmt::format("no place for {}: of the body's points only {} have one",
-                      in_quotes(point.name), known.empty() ? "none" : known),
+          fmt::format("no place for {}: of the body's points {} one", in_quotes(point.name),
+                      known.empty() ? "none has" : "only " + known + " have"),
           draft_.dimension == 2
               ? "a \"pose\", or positions of two of its points"
               : "a \"pose\", or positions of three of its points that are not on one line, or of "
