@@ -80,8 +80,8 @@ TEST(Recommendation, FastestCandidateFirstThenByTimeThenOwnCode) {
                                           {"implementation", "b/small"},
                                           {"scheme", "penalty"},
                                           {"step_us", 4.0},
-                                          {"low_us", 3.0},
-                                          {"high_us", 6.0}}));
+                                          {"low_us", 2.25},
+                                          {"high_us", 9.0}}));
   EXPECT_EQ(d["recommendation"][3]["layer"], "own");
   EXPECT_EQ(d["rule"]["candidates"],
             json::array({{{"implementation", "a/large"}, {"step_us", 8.0}, {"refused", nullptr}},
@@ -102,10 +102,19 @@ TEST(Recommendation, NearestSceneAndWhatIsOutside) {
   EXPECT_EQ(d["rule"]["outside"], json::array({"per_column", "tangent"}));
 }
 
+TEST(Recommendation, ARangeIsNarrowerAmongWhatWasMeasured) {
+  json description = described("four-bar:2");
+  description["features"].update({{"per_column", 3}, {"flops", 9 * 6}, {"tangent", 5 * 6}});
+  const json d = recommended(description);
+  EXPECT_EQ(d["rule"]["outside"], json::array());
+  EXPECT_EQ(d["recommendation"][0]["low_us"], 3.0);
+  EXPECT_EQ(d["recommendation"][0]["high_us"], 6.0);
+}
+
 TEST(Recommendation, Text) {
   const std::string text = recommendation_text(recommended(described("four-bar:2")));
   EXPECT_EQ(text,
-            "take this             b/small, penalty form: 4 us a step (3 to 6), predicted from "
+            "take this             b/small, penalty form: 4 us a step (2.25 to 9), predicted from "
             "times on a "
             "machine\n"
             "  why                 the least of those compared: a/large 8 us, "
@@ -116,7 +125,7 @@ TEST(Recommendation, Text) {
             "inside their range; extrapolated, as this scene is outside of all measured ones in "
             "non-zeros a column of L, non-zeros of the tangent\n"
             "  nearest measured    small (distance 0.091): a/large, 7.5 us\n"
-            "  own code            d/own, penalty form: 5 us a step (2.5 to 10)\n");
+            "  own code            d/own, penalty form: 5 us a step (1.25 to 20)\n");
 }
 
 TEST(Recommendation, TheOtherCandidateWhereItIsFaster) {
@@ -154,7 +163,7 @@ TEST(Recommendation, SaddlePointFormOnlyWhereItWasMeasured) {
   const json d = recommended(described_one);
   EXPECT_EQ(names(d), (Names{"b/small"}));
   EXPECT_EQ(d["recommendation"][0]["scheme"], "saddle-point");
-  EXPECT_EQ(d["recommendation"][0]["high_us"], 60.0);
+  EXPECT_EQ(d["recommendation"][0]["high_us"], 120.0);
   EXPECT_EQ(d["rule"]["candidates"].size(), 1U);
   EXPECT_NE(recommendation_text(d).find("saddle-point form, as no penalty factor"),
             std::string::npos);

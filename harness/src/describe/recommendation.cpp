@@ -47,8 +47,26 @@ bool is_candidate(const Rule& rule, Scheme scheme, const std::string& variant) {
          std::ranges::find(found->second, variant) != found->second.end();
 }
 
+/// Features that are less than in every measured scene that has them, or more.
+json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
+  json result = json::array();
+  for (const auto& [name, value] : scene) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const MeasuredScene& other : scenes) {
+      const auto found = other.features.find(name);
+      if (found == other.features.end()) continue;
+      least = std::min(least, found->second);
+      most = std::max(most, found->second);
+    }
+    if (least <= most && (value < least || value > most)) result.push_back(name);
+  }
+  return result;
+}
+
 /// By layer; the candidate of the least time first, then by time.
 json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
+  // What is extrapolated is off by more: a range is then of its factors squared.
+  const double power = outside(rule.scenes, scene).empty() ? 1.0 : 2.0;
   std::vector<json> result;
   std::string taken;
   double least = std::numeric_limits<double>::infinity();
@@ -60,8 +78,8 @@ json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot
                       {"implementation", variant.name},
                       {"scheme", name_of(scheme)},
                       {"step_us", us},
-                      {"low_us", us * time.low},
-                      {"high_us", us * time.high}});
+                      {"low_us", us * std::pow(time.low, power)},
+                      {"high_us", us * std::pow(time.high, power)}});
     if (is_candidate(rule, scheme, variant.name) && us < least) {
       taken = variant.name;
       least = us;
@@ -90,22 +108,6 @@ json nearest(const std::vector<MeasuredScene>& scenes, const Features& scene) {
           {"distance", distance(found)},
           {"fastest", found.fastest},
           {"step_us", found.step_us}};
-}
-
-/// Features that are less than in every measured scene that has them, or more.
-json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
-  json result = json::array();
-  for (const auto& [name, value] : scene) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const MeasuredScene& other : scenes) {
-      const auto found = other.features.find(name);
-      if (found == other.features.end()) continue;
-      least = std::min(least, found->second);
-      most = std::max(most, found->second);
-    }
-    if (least <= most && (value < least || value > most)) result.push_back(name);
-  }
-  return result;
 }
 
 /// What is compared: {implementation, step_us, refused}; the time null where refused.
