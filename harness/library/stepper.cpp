@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "library/content.hpp"
+#include "printable.hpp"
 #include "registry/factory.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
@@ -71,7 +72,8 @@ std::vector<InputRange> input_ranges(const Scene& scene) {
 int index_of(std::string_view name, const std::vector<std::string>& names, const char* what) {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
-  throw Refused(fmt::format("the scene has no {} '{}': there are {}", what, name, listed(names)));
+  throw Refused(
+      fmt::format("the scene has no {} '{}': there are {}", what, printable(name), listed(names)));
 }
 
 std::size_t place_of(int index, const std::vector<std::string>& names, const char* what) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "describe/warnings.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
@@ -147,9 +148,10 @@ void add_simulate_command(CLI::App& app, int& status) {
   command->add_option("--trajectory", options->trajectory,
                       "write all points, energies and the constraint violation to this CSV file, "
                       "compressed if it ends in .gz");
-  command->add_option("--output", options->output,
-                      "write the scene's \"outputs\", and nothing else, to this CSV file, compressed if "
-                      "it ends in .gz");
+  command->add_option(
+      "--output", options->output,
+      "write the scene's \"outputs\", and nothing else, to this CSV file, compressed if "
+      "it ends in .gz");
   command->add_option("--every", options->every, "write every K-th step only, K >= 1")
       ->capture_default_str();
   command->add_option(
