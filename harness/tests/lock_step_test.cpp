@@ -42,6 +42,7 @@ TEST(FreeRunningTolerance, OfSinglePrecisionOnlyFollowsTheMotion) {
 TEST(FreeRunningTolerance, IsAShareOfASmallScene) {
   EXPECT_DOUBLE_EQ(free_running_tolerance(probe_of(1e-6, 1e4), {}, 1e-6).q, 1e-13);
   EXPECT_EQ(free_running_tolerance(probe_of(1.0, 1e16), {}, 1.0).q, 1e-6);  // not 9e-6
+  EXPECT_DOUBLE_EQ(free_running_tolerance(probe_of(1e-6, 1e16), {}, 1e-6).q, 1e-12);
 }
 
 }  // namespace

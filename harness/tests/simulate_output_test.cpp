@@ -136,6 +136,17 @@ TEST_F(SimulateOutput, LeavesNothingBehindWhereItsReaderLeaves) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}), 1);
 }
 
+TEST_F(SimulateOutput, WarnsOfForcesThatConstraintsLeaveOpen) {
+  const std::string square = folder_.file("square.json");
+  std::ofstream(square) << R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
+      {"name": "A", "position": [1, 0]}, {"name": "B", "position": [1, 1]}, {"name": "C", "position": [0, 1]}],
+    "rods": [{"name": "OA", "between": ["O", "A"], "mass": 1}, {"between": ["A", "B"], "mass": 1},
+      {"between": ["B", "C"], "mass": 1}, {"between": ["C", "O"], "mass": 1}, {"between": ["O", "B"], "mass": 1},
+      {"between": ["A", "C"], "mass": 1}], "outputs": [{"name": "pull", "constraint_force": "OA"}]})";
+  const auto run = simulate("'" + square + "' --duration 0.01");
+  EXPECT_NE(run.errors.find("mbs: warning: outputs \"pull\":"), std::string::npos) << run.errors;
+}
+
 TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
   const auto run = simulate(scene() + " --duration 0.01 --json");
   ASSERT_EQ(run.status, 0) << run.errors;

@@ -167,14 +167,16 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
 }
 
 /// What mbs says of the forces of a square's rods and an angle at its corner.
-std::string said_of_square(const std::string& rods, const std::string& constraints = "") {
+std::string said_of_square(
+    const std::string& rods, const std::string& constraints = "",
+    const std::string& outputs = R"({"name": "pull", "constraint_force": "OA"})") {
   return force_warning(scene_of(
       nlohmann::json::parse(R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
       {"name": "A", "position": [1, 0]}, {"name": "B", "position": [1, 1]}, {"name": "C", "position": [0, 1]}],
     "rods": [{"name": "OA", "between": ["O", "A"], "mass": 1}, {"name": "AB", "between": ["A", "B"], "mass": 1},
       {"name": "BC", "between": ["B", "C"], "mass": 1}, {"name": "CO", "between": ["C", "O"], "mass": 1})" +
-                            rods + R"(], "constraints": [)" + constraints +
-                            R"(], "outputs": [{"name": "pull", "constraint_force": "OA"}]})"),
+                            rods + R"(], "constraints": [)" + constraints + R"(], "outputs": [)" +
+                            outputs + "]}"),
       "test"));
 }
 
@@ -184,6 +186,13 @@ TEST(Warnings, TellOfForcesThatConstraintsLeaveOpen) {
   EXPECT_NE(
       said_of_square(one + R"(, {"between": ["A", "C"], "mass": 1})").find("outputs \"pull\":"),
       std::string::npos);
+  std::string all;
+  for (const char* rod : {"OA", "AB", "BC", "CO"}) {
+    all += (all.empty() ? "" : ", ") + std::string(R"({"name": ")") + rod +
+           R"(", "constraint_force": ")" + rod + R"("})";
+  }
+  EXPECT_TRUE(said_of_square(one + R"(, {"between": ["A", "C"], "mass": 1})", "", all)
+                  .starts_with(R"(outputs "OA", "AB", "BC", and others: )"));
   // Of the two rows of a driven angle one depends on the other and on the rods: what they do does
   // not.
   EXPECT_EQ(said_of_square("", R"({"type": "angle", "first": ["O", "A"], "second": ["A", "B"],

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
@@ -41,28 +42,32 @@ std::string step_warning(const PenaltyWindow& window, const StepSettings& settin
 
 bool is_force(const Output& output) { return output.kind == Output::Kind::constraint_force; }
 
-/// Whether the force is the same for all lambda with the same Phi_q^T lambda: its coefficients are
-/// in the range of Phi_q, whose `entries` and `rank` these are.
-bool is_determined(const Scene& scene, const Output& output, State state,
-                   const std::vector<JacobianEntry>& entries, int rank) {
+/// Whether these forces are the same for all lambda with the same Phi_q^T lambda: their
+/// coefficients are in the range of Phi_q, whose `entries` and `rank` these are.
+bool are_determined(const Scene& scene, std::span<const Output* const> outputs, State state,
+                    const std::vector<JacobianEntry>& entries, int rank) {
   const Model& model = scene.model;
   SceneMotion motion(scene);
   motion.set(0.0, state);
   state.lambda.assign(static_cast<std::size_t>(model.constraints()), 0.0);
-  std::vector<JacobianEntry> with_force = entries;
-  for (const int row : output.rows) {
-    double& lambda = state.lambda[static_cast<std::size_t>(row)];
-    lambda = 1.0;
-    const Vector3 by_row = output.force == Output::Force::vector
-                               ? constraint_vector(scene, motion, state, output)
-                               : Vector3{constraint_scalar(scene, motion, state, output)};
-    lambda = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      with_force.push_back({row, model.variables() + axis, by_row[static_cast<std::size_t>(axis)]});
+  std::vector<JacobianEntry> with_forces = entries;
+  int col = model.variables();
+  for (const Output* output : outputs) {
+    for (const int row : output->rows) {
+      double& lambda = state.lambda[static_cast<std::size_t>(row)];
+      lambda = 1.0;
+      const Vector3 by_row = output->force == Output::Force::vector
+                                 ? constraint_vector(scene, motion, state, *output)
+                                 : Vector3{constraint_scalar(scene, motion, state, *output)};
+      lambda = 0.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        with_forces.push_back({row, col + axis, by_row[static_cast<std::size_t>(axis)]});
+      }
     }
+    col += 3;
   }
-  std::ranges::stable_sort(with_force, {}, &JacobianEntry::row);
-  const auto found = find_rank(model.constraints(), model.variables() + 3, with_force);
+  std::ranges::stable_sort(with_forces, {}, &JacobianEntry::row);
+  const auto found = find_rank(model.constraints(), col, with_forces);
   return !found || found->rank == rank;
 }
 
@@ -142,14 +147,32 @@ std::string force_warning(const Scene& scene) {
   if (cols > kMostVariablesToWarn || std::ranges::none_of(scene.elements.outputs, is_force))
     return "";
   const auto q = model.initial_position(), v = model.initial_velocity();
-  std::vector<JacobianEntry> entries = jacobian(model, 0.0, q);
+  const std::vector<JacobianEntry> entries = jacobian(model, 0.0, q);
   const auto own = find_rank(rows, cols, entries);
   if (!own || own->dependent.empty()) return "";
   const State start{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}, 0.0};
-  std::vector<std::string> open;
+  std::vector<const Output*> forces;
   for (const Output& output : scene.elements.outputs) {
-    if (is_force(output) && !is_determined(scene, output, start, entries, own->rank))
-      open.push_back(in_quotes(output.name));
+    if (is_force(output)) forces.push_back(&output);
+  }
+  std::span<const Output* const> left = forces;
+  const auto determined = [&](std::span<const Output* const> some) {
+    return are_determined(scene, some, start, entries, own->rank);
+  };
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> open;
+  while (!determined(left)) {
+    if (open.size() == kMostNamed) {
+      open.emplace_back("and others");
+      break;
+    }
+    std::size_t begin = 0, end = left.size();  // among these is the first that is open
+    while (end - begin > 1) {
+      const std::size_t middle = (begin + end) / 2;
+      (determined(left.subspan(begin, middle - begin)) ? begin : end) = middle;
+    }
+    open.push_back(in_quotes(left[begin]->name));
+    left = left.subspan(begin + 1);
   }
   if (open.empty()) return "";
   return fmt::format(
