@@ -135,6 +135,7 @@ int simulate(const SimulateOptions& options) {
   fmt::print(stderr, "mbs: {} on {}: {}{}: {}{}\n", variant.name, scene.name,
              to_string(summary.status), when("at"), summary.reason,
              warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
+  if (summary.status == RunStatus::diverged) fmt::print(stderr, "mbs: a shorter --step may help\n");
   return 1;
 }
 

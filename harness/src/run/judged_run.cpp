@@ -271,7 +271,7 @@ void JudgedRun::add_local_errors(const Sample& sample) {
 std::string JudgedRun::hint() const {
   return settings_.step.scheme == Scheme::multistep6
              ? " (multistep6 cannot pass singular positions: if there is one, try rattle)"
-             : ": a shorter step may help";
+             : "";
 }
 
 void JudgedRun::lose(const Judge& judge, const std::string& reason, long step) {
