@@ -37,13 +37,14 @@ double machine_load() {
   return ::getloadavg(&load, 1) == 1 ? load : -1.0;
 }
 
-/// Why nobody but the control was timed; empty if somebody was, or if nobody else was asked for.
+/// Why nobody but the control was timed, or left out as slow; empty if somebody was, or if nobody
+/// else was asked for.
 std::string why_nobody(const SceneResult& scene) {
   std::string first;
   long others = -1;
   for (const ContenderResult& one : scene.contenders) {
     if (one.cell->control) continue;
-    if (one.timed()) return "";
+    if (one.timed() || one.slower()) return "";
     if (others++ < 0) first = fmt::format("{}: {}", one.cell->variant_name(), one.failure);
   }
   return others > 0 ? fmt::format("{}; and {} more", first, others) : first;
