@@ -190,8 +190,7 @@ TEST(BenchProgram, LeavesTheSlowOut) {
   const auto run = test::run_program(
       MBS_CONTROLS, "bench four-bar:2 --implementation control/reference --patience 1e-9" +
                         std::string(kShort) + "--benchmark_out=" + out);
-  EXPECT_EQ(run.status, 1) << "nobody was timed";
-  EXPECT_TRUE(run.errors.find("nothing was timed") != std::string::npos) << run.errors;
+  EXPECT_EQ(run.status, 0) << run.errors;
   const json row = json::parse(test::file_text(out)).at("benchmarks").at(0);
   fs::remove(out);
   EXPECT_EQ(row["error_occurred"], true);
