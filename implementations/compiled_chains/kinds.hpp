@@ -44,7 +44,8 @@ auto with_kind(std::span<const Topology> chains, const Make& make) {
     least = std::min(least, chain.least_rods);
     most = std::max(most, chain.most_rods);
   }
-  if (!isotropic) return make.template operator()<GeneralMass, AtMostRods<kMostRods>>();
+  if (!isotropic && most > 1) return make.template operator()<GeneralMass, AtMostRods<kMostRods>>();
+  if (!isotropic) return make.template operator()<GeneralMass, AtMostRods<1>>();
   if (most > 1) return make.template operator()<IsotropicMass, AtMostRods<kMostRods>>();
   if (uniform && least == 1) return make.template operator()<UniformMass, OneRod>();
   return make.template operator()<IsotropicMass, AtMostRods<1>>();

@@ -14,7 +14,8 @@ struct SaddleBlock : RowBlock<V, Rods> {
 };
 
 /// The matrix is T of the penalty form, in which dᵀd and eᵀe are larger than M by 10⁸: they are
-/// kept apart, so that determinants are sums of what is positive and M does not drown in them.
+/// kept apart, so that determinants are sums of what is positive and M does not drown in them. Nor
+/// does λ in violations: README.md, "Saddle-point form".
 template <class Store, bool kFirst>
 class SaddleNewton {
  public:
@@ -25,7 +26,7 @@ class SaddleNewton {
     result.least = inwards(chain);
     LargestOf<typename Store::Use> largest;
     Vec<V> inner;
-    substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
+    const auto move = [&](B& block, const Vec<V>& x) {
       largest.add(x);
       block.x = block.x - (V{} + 0.5) * x;
       block.u = block.u - x;
@@ -34,7 +35,8 @@ class SaddleNewton {
       }
       block.link += block.link_violation - dot(block.e, inner - x);
       inner = x;
-    });
+    };
+    substitute_outwards<Store, decltype(move), &B::f, Solved>(chain, move);
     result.largest = largest.value();
     return result;
   }
@@ -42,6 +44,10 @@ class SaddleNewton {
  private:
   using B = typename Store::B;
   using C = typename Store::C;
+
+  struct Solved {
+    MBS_CHAIN_INLINE Vec<V> operator()(const B& block) const { return read(block.f); }
+  };
 
   MBS_CHAIN_INLINE static void predict(B& block) {
     block.w = block.w + block.u;
@@ -65,14 +71,32 @@ class SaddleNewton {
     return result;
   }
 
-  /// The distances of a point to fixed ones, and its right-hand side but for links.
+  /// The distances of a point to fixed ones, and its right-hand side but for links and violations.
   MBS_CHAIN_INLINE static void point(B& block, const C& data, Vec<V>& f) {
     f = f + data.mass.times(block.u);
     for (int j = 0; j < Store::kRods; ++j) {
       block.d[j] = data.rods[j].vector(block.x);
       block.violation[j] = data.rods[j].violation(block.d[j]);
-      f = f + (block.rods[j] + block.violation[j]) * block.d[j];
+      f = f + block.rods[j] * block.d[j];
     }
+  }
+
+  /// adj(b bᵀ) a
+  MBS_CHAIN_INLINE static Vec<V> adjugate_of_square_times(const Vec<V>& b, const Vec<V>& a) {
+    return cross(b, a) * Vec<V>(-b.y, b.x);
+  }
+
+  /// adj(S + Σ d dᵀ) Σ p d, without adj(d dᵀ) d, which is 0.
+  MBS_CHAIN_INLINE static Vec<V> violations_solved(const Sym<V>& S, const B& block) {
+    Vec<V> sum{};
+    for (int j = 0; j < Store::kRods; ++j) {
+      Vec<V> z = adjugate_times(S, block.d[j]);
+      for (int k = 0; k < Store::kRods; ++k) {
+        if (k != j) z = z + adjugate_of_square_times(block.d[k], block.d[j]);
+      }
+      sum = sum + block.violation[j] * z;
+    }
+    return sum;
   }
 
   MBS_CHAIN_INLINE static void assemble_and_eliminate(B& block, const B& next, const C& data,
@@ -82,18 +106,19 @@ class SaddleNewton {
     const Vec<V> e = data.link.vector(next.x - block.x);
     block.e = e;
     block.link_violation = data.link.violation(e);
-    const Vec<V> pull = (block.link + block.link_violation) * e;
-    f = carry.force + (f - pull);
+    f = carry.force + (f - block.link * e);
 
     const Sym<V> light = plus(data.mass.matrix(), carry.reciprocal, carry.update);
     const V delta = determinant_with(light, block);
     Vec<V> z = adjugate_times(light, e);
     V sigma = delta + dot(e, z);
     Sym<V> S = plus_square(light, e);
+    Vec<V> solved = violations_solved(light, block);
     for (int j = 0; j < Store::kRods; ++j) {
       const Vec<V>& d = block.d[j];
       const V area = cross(d, e);
       z = z + area * Vec<V>(-d.y, d.x);
+      solved = solved + block.violation[j] * area * Vec<V>(e.y, -e.x);
       sigma = sigma + area * area;
       S = plus_square(S, d);
     }
@@ -101,8 +126,11 @@ class SaddleNewton {
     carry.update = data.mass.update(delta, z, e, S);
     least = smaller(least, smaller(S.xx, sigma));
     finish(block.factors, data.mass, S, z, carry.reciprocal, e);
-    block.f = f;
-    carry.force = forward(block.factors.gain, pull + data.mass.inner(block.u), f);
+    const Vec<V> x =
+        carry.reciprocal * (adjugate_times(S, f) + (solved - block.link_violation * z));
+    block.f = x;
+    carry.force =
+        data.mass.inner(block.u - x) + (block.link + block.link_violation + dot(e, x)) * e;
   }
 
   static V inwards(Store& chain) {
@@ -125,10 +153,11 @@ class SaddleNewton {
     S.xy = S.xy + Lanes<typename Store::Use>::meet(r * carry.update.xy);
     S.yy = S.yy + Lanes<typename Store::Use>::meet(r * carry.update.yy);
     const V sigma = determinant_with(S, *block);
-    for (int j = 0; j < Store::kRods; ++j) S = plus_square(S, block->d[j]);
     const V reciprocal = reciprocal_of(sigma);
+    const Vec<V> solved = violations_solved(S, *block);
+    for (int j = 0; j < Store::kRods; ++j) S = plus_square(S, block->d[j]);
     block->factors.scaled = {reciprocal * S.xx, reciprocal * S.xy, reciprocal * S.yy};
-    block->f = reciprocal * adjugate_times(S, f);
+    block->f = reciprocal * (adjugate_times(S, f) + solved);
     return smaller(least, smaller(S.xx, smaller(sigma, reciprocal)));
   }
 };
