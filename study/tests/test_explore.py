@@ -4,6 +4,7 @@ import math
 import random
 import re
 import shutil
+from functools import cache
 from urllib.parse import quote
 
 import pandas
@@ -67,20 +68,27 @@ To the fastest: median of the ratios of samples taken side by side, and its
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """The set with its page, and another one of another processor beside it, which has the map alone."""
+def made(tmp_path_factory):
+    """(the set with its page, and another one of another processor beside it, which has the map alone; what was read of it)"""
     base = tmp_path_factory.mktemp("sets")
     for name, without in (("first", ("engines", "extremes*")), ("second", ("families*", "accuracy*"))):
         shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns(*without))
     facts = read_json(base / "second" / "set.json")
     write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND, "commit": COMMIT}})
-    site.write_index(base / "first")
-    return base / "first"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(data, "read", cache(data.read))  # takes seconds
+        site.write_index(base / "first")
+        return base / "first", data.read(base / "first")
 
 
-@pytest.fixture(scope="module")
-def found(folder):
-    return data.read(folder)
+@pytest.fixture
+def folder(made):
+    return made[0]
+
+
+@pytest.fixture
+def found(made):
+    return made[1]
 
 
 @pytest.fixture
