@@ -199,7 +199,7 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
     described, parted, own = page.cases(tables, VIEW)
     assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
-        "one/b if c ≥ 10; else one/a (c: non-zeros of L a column); on families left out")
+        "one/b if c ≥ 10; else one/a (c: non-zeros of L per column); on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
