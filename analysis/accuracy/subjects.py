@@ -13,7 +13,7 @@ from analysis.core.outcomes import FINISHED, of_run
 from study.scenes import metric
 from study.scenes.mechanics import TOLERANCE
 from study.scenes.problems import read_list
-from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
+from study.scenes.references import CLOSED, EXTRAPOLATED, four_bar, kind, solution
 
 STEPS = tuple(4e-2 / 2**halvings for halvings in range(11))  # s, from where hardly anybody keeps 1e-1 m
 AROUND = (20, 10, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
@@ -91,11 +91,11 @@ def reference(subject, runs=()):
                        for both in zip(runs, runs[1:]))
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
     else:
-        known, word = KNOWN[name](times), kind(name)
+        known, word = solution(name, tuple(times)), kind(name)
         if name in CLOSED:
             less, origin = CLOSED[name](times * (1 + ULP)), "rounding"
         else:
-            less, origin = KNOWN[name](times, tolerance=100 * TOLERANCE), "a hundred times the tolerance"
+            less, origin = solution(name, tuple(times), tolerance=100 * TOLERANCE), "a hundred times the tolerance"
     known, less = ({column: one[column] for column in subject.entry.columns(one)} for one in (known, less))
     return Reference(word, metric.errors(less, known)[0], origin, known)
 

@@ -68,3 +68,10 @@ def grouped(table, key):
 def layout(path):
     """The template of a text that is no page."""
     return jinja2.Template(path.read_text(encoding="utf-8"), trim_blocks=True, undefined=jinja2.StrictUndefined)
+
+
+def answers(path, otherwise, **known):
+    """What a template says, a line an answer: "ANCHOR: sentences"; `otherwise`, where that is nothing."""
+    said = layout(path).render(known, number=number, between=between, span=span).splitlines() if known else []
+    found = [(anchor, text.strip()) for anchor, _, text in (line.partition(":") for line in said) if text.strip()]
+    return [{"anchor": anchor, "text": text} for anchor, text in found or [("", otherwise)]]

@@ -7,7 +7,7 @@ import numpy
 from analysis.extremes.linkages import Dyad, Linkage, Side
 from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod, shifted_rod, twin_rod
 from study.scenes.mechanics import double_pendulum, integrate
-from study.scenes.references import CLOSED, KNOWN
+from study.scenes.references import CLOSED, solution
 
 
 def _of_rods(motion, *rods):
@@ -112,4 +112,4 @@ class Standard(namedtuple("Standard", "known"), Motion):
     accuracy = property(lambda self: 0.0 if self.known in CLOSED else 1e-8)
 
     def solutions(self, times):
-        return [{column: values for column, values in KNOWN[self.known](times).items() if column.endswith((".x", ".y", ".z"))}]
+        return [{column: values for column, values in solution(self.known, tuple(times)).items() if column.endswith((".x", ".y", ".z"))}]

@@ -4,10 +4,12 @@ import random
 from dataclasses import replace
 from functools import cache
 from itertools import product
+from pathlib import Path
 
 import numpy
 from scipy.optimize import minimize_scalar
 
+from analysis.core.files import from_yaml
 from analysis.extremes.cells import FORMS, STEP, Extreme
 from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing, Wheel
 from analysis.extremes.mechanisms import Beside, Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
@@ -30,16 +32,7 @@ FREE = (*DRIVEN, *map(Setting, ("rattle", "rattle4", "rattle6", "multistep6"))) 
 LOOSE = tuple(Setting(form.scheme, (("projections", "none"), ("tolerance", "1e-4"))) for form in FORMS)  # as study/advise may name
 PASSAGE, REGULAR = ("wrong-branch",), ("wrong-branch", "diverged", "not-converged")  # what is no outcome of a motion that is right
 STANDARD = ("standard problem", "example or family")
-LINKS = {"A01": 1.0, "A02": 1.0, "A03": 7e-3, "A04": 1.0, "A05": 1.0, "slider-crank": 0.5, "double four-bar": 1.0, "spatial slider-crank": 0.08,
-         "chain": 0.1, "grid": 1.0, "half car": 0.4}  # m, the shortest link
-EXAMPLES = {  # and families in small: the length of the shortest link, m
-    **{f"harness/scenes/{name}.json": length for name, length in (
-        ("pendulum", 1.0), ("point_mass_pendulum", 0.866), ("double_pendulum", 1.0), ("four_bar_2", 1.0), ("examples/bump_stop", 0.8),
-        ("examples/compound_pendulum", 0.36), ("examples/coupler", 1.0), ("examples/driven_crank", 0.5), ("examples/driven_elbow", 1.0),
-        ("examples/planar_joints", 0.5), ("examples/quarter_car", 0.8), ("examples/slider_crank", 0.1), ("examples/spatial_angles", 1.0),
-        ("examples/spatial_joints", 0.07), ("examples/spatial_pendulum", 0.5), ("examples/spatial_slider_crank", 0.08))},
-    "chain:3": 1.0, "loop:6": 1.0, "tree:3": 1.0, "ladder:3": 0.5, "grid:3x3": 0.5, "truss:2": 1.0, "scissors:3": 0.5, "bodies:3": 0.5,
-    "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57, "cloth:3x3": 0.25}
+EXAMPLES = from_yaml(Path(__file__).with_name("examples.yaml").read_text())
 
 
 def four_bar(crank, coupler, rocker, ground, side=Side()):
@@ -190,6 +183,6 @@ def _standard():
     for one in read_list()[1]:
         own = tuple(option for option in one.options if option not in (("penalty", "auto"), ("tolerance", "auto"), ("max-passes", "20")))
         yield Extreme(STANDARD[0], one.name, one.scene, None if one.known == EXTRAPOLATED else Standard(one.known), step=one.steps[0],
-                      steps=round(one.duration / one.steps[0]), length=LINKS[one.name],
+                      steps=round(one.duration / one.steps[0]), length=one.link,
                       kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),
                       settings=(Setting("penalty", own),) if own else FORMS, harmless=REGULAR)

@@ -1,7 +1,9 @@
 # What page.html.j2 shows of families of mechanisms; the answer to "Which implementation is fastest on real mechanisms, at their own fill?".
+from pathlib import Path
+
 import pandas
 
-from analysis.core.text import number
+from analysis.core.text import answers as said, number
 from analysis.families import by_hand
 from analysis.families.bounds import bounds
 from analysis.families.figures import best_form, fastest_own
@@ -46,43 +48,17 @@ def _formulas(steps):
 
 
 def answers(tables, view):
-    scenes, mine = tables["scenes"], best_form(tables["winners"])
-    if mine.empty:
-        return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
+    scenes, held, defaults, mine = tables["scenes"], tables["held"], tables["defaults"], best_form(tables["winners"])
     real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill
     first = real.equivalent.str.split().explode().value_counts()  # of each library, the scenes on which it is in the equivalence set
-    shares = ", ".join(f"{name} on {count}" for name, count in sorted(first.items(), key=lambda one: (-one[1], one[0])))
-    found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
-              f"{number(real.variables.max(), 5)}), the fastest library, or as fast to 5 %, is {shares}. On {int(real.settled.astype(bool).sum())} of the "
-              f"{len(real)} this is settled."}]
-    if len(tables["held"]):
-        held = summary(tables["held"])
-        found.append({"anchor": "rule", "text": f"The rule of mbs describe takes the least of at most three predicted times. On families that it was not fitted on, its choice takes "
-                      f"{100 * held['mean_loss']:.1f} % longer than the fastest library on average, {100 * held['worst_loss']:.0f} % at worst"
-                      f"{_unknown(held['unknown'], ' ({})')}; {100 * held['within']:.0f} % of "
-                      "the step times are within 1.5 times of the predicted."})
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
-    for name, rows in own.groupby("implementation", sort=False):
-        ahead, behind = rows[rows.to_rival_high < 1], rows[rows.to_rival_low > 1]
-        found.append({"anchor": "map", "text": f"{name}, our own code, is shown to be faster than the fastest library on {len(ahead)} of "
-                      f"{len(rows)} mechanisms that it serves, slower on {len(behind)} (time over the library's: {number(rows.to_rival.min())} to "
-                      f"{number(rows.to_rival.max())})."})
-    return found + _defaults(tables["defaults"])
+    known = {"real": real, "first": sorted(first.items(), key=lambda one: (-one[1], one[0])), "held": summary(held) if len(held) else None, "own": own,
+             "defaults": defaults[defaults["mean"].notna()].sort_values("mean")}
+    return said(Path(__file__).with_name("answers.j2"), "Not measured: no library was timed that the gate agrees with.", **known if len(mine) else {})
 
 
 def _unknown(count, form):
     return form.format(f"{count} choices that have no time there are left out") if count else ""
-
-
-def _defaults(rows):
-    """What the defaults of other tools cost, the least and the largest mean."""
-    rows = rows[rows["mean"].notna()].sort_values("mean")
-    if rows.empty:
-        return []
-    told = lambda row: (f"“{row['rule']}” ({'at least ' if row['smaller'] > 0 else 'about ' if row['rough'] else ''}{number(row['mean'])} "
-                        f"times the fastest library's time on average, {number(row['worst'])} at worst)")
-    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} scenes, the least costly is "
-             f"{told(rows.iloc[0])}, the most costly {told(rows.iloc[-1])}."}]
 
 
 def cases(tables, view):

@@ -80,15 +80,12 @@ def _growth(steps, form):
     rows = _fastest(steps[steps.variables >= GROWTH_FROM], "loops", "step_us", True).sort_values("variables")
     whole = len(rows) > 2 and rows.variables.iloc[-1] >= GROWTH_TO
     for name, column in (("a step's time", "step_us"), ("a pass's time", "pass_us"), ("memory", "memory_bytes")):
-        row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
-               "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
-        if whole and rows[column].notna().all():
-            exponent, low, high = power_law(rows.variables, rows[column])
-            row |= {"worst": exponent, "low": low, "high": high,
-                    "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
-                    "variant": rows.implementation.iloc[-1], "record": " ".join(rows.record),
-                    "verdict": _verdict(MOST, EXPONENT, exponent, low, high)}
-        yield row
+        fit = rows.tail(1) if whole and rows[column].notna().all() else rows[:0]
+        if len(fit):
+            fit = fit.assign(**dict(zip(("exponent", "low", "high"), power_law(rows.variables, rows[column]))), record=" ".join(rows.record),
+                             scene=f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}")
+        yield _worst(f"exponent of {name} over n, {form} form", MOST, EXPONENT, fit, "exponent", 1) | {
+            "cases": len(rows), "measured": len(rows) if whole else 0}
     if form == "penalty":
         last = rows[rows.variables >= GROWTH_TO]
         yield _worst("set-up, s", MOST, SET_UP_S, last.assign(setup=last.setup_us / 1e6), "setup", 1)

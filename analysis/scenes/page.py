@@ -1,11 +1,13 @@
 # What page.html.j2 shows of the standard problems and of modelling; whether they come out right, and what each piece of modelling costs.
 import base64
 import math
+from pathlib import Path
 
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
-from analysis.core.text import between, grouped, number
+from analysis.core.text import answers as said, grouped
 
+HERE = Path(__file__).parent
 SHEETS = ROOT / "harness" / "scenes" / "pictures"
 CONSERVED = 1e-3  # share of the energy's scale
 DROPPED = ("unsupported", "dropped")
@@ -50,41 +52,15 @@ def finest(problems):
 
 
 def answers(tables, view):
-    found = [*_errors(finest(tables["problems"])), *_gate(tables["gate"]), *_costs(tables["modelling"])]
-    return found or [{"text": "Not measured: no implementation that runs them took part.", "anchor": ""}]
-
-
-def _errors(rows):
-    if rows.empty:
-        return
-    judged = rows[rows.precision != "not judged"]
-    high = judged[judged.status.isin(GOOD) & (judged.precision == "high")]
-    text = (f"{rows.problem.nunique()} standard problems, {rows.implementation.nunique()} implementation"
-            f"{'s' if rows.implementation.nunique() > 1 else ''}: {len(high)} of {len(rows)} runs are of high precision")
-    if len(high):
-        worst = high.loc[high.error_rms.idxmax()]
-        text += f", with an error of {number(worst.error_rms, 2)} at most ({worst.title})"
-    yield {"text": f"{text}.", "anchor": "problems"}
-
-
-def _gate(gate):
-    asked = gate[~gate.verdict.isin(DROPPED)]
-    good, left = (asked.verdict == "agrees").sum(), (gate.verdict == "dropped").sum()
-    if len(asked):
-        yield {"text": f"The gate: {good} of {len(asked)} pairs of problem and implementation agree with the reference"
-                       + (f"; {left} more were left out." if left else "."), "anchor": "gate"}
+    gate = tables["gate"]
+    return said(HERE / "answers.j2", "Not measured: no implementation that runs them took part.", rows=finest(tables["problems"]), good=GOOD,
+                asked=gate[~gate.verdict.isin(DROPPED)], left=(gate.verdict == "dropped").sum(), costs=_costs(tables["modelling"]))
 
 
 def _costs(modelling):
-    """A sentence a size, of the implementation that is fastest on the plain model."""
+    """(size, rows of the implementation that is fastest there on the plain model)"""
     for loops, group in modelling[modelling.ratio.notna()].groupby("loops"):
         plain = group[(group.case == group.base) & group.step_us.notna()]
         rows = group[group.status.isin(GOOD) & (group.case != group.base)]
-        rows = rows[rows.implementation == plain.implementation[plain.step_us.idxmin()]] if len(plain) else rows[:0]
-        if len(rows):
-            yield {"anchor": "modelling", "text": f"The four-bar of N = {loops:.0f}, modelled in other ways with {rows.implementation.iloc[0]}: "
-                                                  f"{_cost(rows.loc[rows.ratio.idxmax()])}; {_cost(rows.loc[rows.ratio.idxmin()])}."}
-
-
-def _cost(row):
-    return f"{row.case} takes {between(row.ratio, row.ratio_low, row.ratio_high)} times the plain step"
+        if len(plain):
+            yield loops, rows[rows.implementation == plain.implementation[plain.step_us.idxmin()]]

@@ -1,6 +1,4 @@
 # Rows of the gate, of the standard problems and their convergence, and of what modelling costs.
-from functools import cache
-
 import numpy
 import pandas
 
@@ -11,7 +9,7 @@ from analysis.core.outcomes import FINISHED, GOOD, of_run
 from study.scenes import metric
 from study.scenes.modelling import CASES
 from study.scenes.problems import read_list
-from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, kind
+from study.scenes.references import EXTRAPOLATED, PUBLISHED, four_bar, kind, solution
 
 NOT_JUDGED = "not judged"  # the precision of what has nothing to be compared with
 ORDER_NOISE = 1e-9  # differences of successive steps below this share of a component are rounding
@@ -61,8 +59,8 @@ def _known(problem, runs, name, step):
     """{column: values} that a run is judged by, or None if what it needs is missing: self-convergence needs the
     finest two steps of the other one that is compared."""
     if problem.known != EXTRAPOLATED:
-        solution = _solution(problem.known, tuple(numpy.round(_values(runs[name, step], "t"), 12)))
-        return {column: solution[column] for column in problem.columns(solution)}
+        known = solution(problem.known, tuple(numpy.round(_values(runs[name, step], "t"), 12)))
+        return {column: known[column] for column in problem.columns(known)}
     other = next((one for one, _ in runs if one != name and runs[one, problem.steps[0]].role == "compared"), None)
     finer, finest = (runs.get((other, one)) for one in problem.steps[1:])
     if not _whole(finer, finest):
@@ -72,9 +70,6 @@ def _known(problem, runs, name, step):
 
 def _whole(*records):
     return all(record and of_run(record)[0] in FINISHED for record in records)
-
-
-_solution = cache(lambda known, times: KNOWN[known](numpy.array(times)))
 
 
 def _values(record, column):

@@ -1,7 +1,10 @@
 # What the page says besides its maps: outcomes counted, valleys, where the automatic factor misses one; which factor works at which step.
-from analysis.core.text import number
+from pathlib import Path
+
+from analysis.core.text import answers as said
 from analysis.stability import tables as rules
 
+HERE = Path(__file__).parent
 ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 
 
@@ -44,18 +47,7 @@ def valleys(rows):
 
 
 def answers(tables, view):
-    maps = tables["maps"]
+    maps, whole = tables["maps"], tables["whole"]
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
-    found = []
-    for scheme, rows in automatic.groupby("scheme", sort=False):
-        good = rows[rows.status == "ok"]
-        found.append({"anchor": f"{scheme}-double", "text":
-                      f"{scheme.capitalize()} form: the automatic factor is ok in {len(good)} of {len(rows)} cells of size and "
-                      f"step" + (f", with steps up to {number(1e3 * good.step.max())} ms" if len(good) else "")
-                      + f", over {number(view.settings['duration'])} s."})
-    whole = tables["whole"]
-    if len(asked := whole[whole.must_hold != ""]):
-        kept = asked[asked.must_hold == "yes"]
-        found.append({"anchor": "whole", "text": f"Whole runs with everything automatic: {len(kept)} of {len(asked)} keep what "
-                                                 f"their form must hold, up to N = {number(kept.loops.max(), 4)}."})
-    return found or [{"text": "Not measured: no implementation that draws these maps took part.", "anchor": ""}]
+    return said(HERE / "answers.j2", "Not measured: no implementation that draws these maps took part.", automatic=automatic,
+                asked=whole[whole.must_hold != ""], duration=view.settings["duration"])

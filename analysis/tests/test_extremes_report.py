@@ -85,12 +85,13 @@ def test_trials_that_did_not_run_or_cannot_be_judged_have_no_verdict():
 
 
 def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
-    found = made(trial("plausible"), trial("plausible", 0.5), trial("ok", 0.6), trial("degraded"), trial("ok", of=STANDARD))["battery"]
+    tables = made(trial("plausible"), trial("plausible", 0.5), trial("ok", 0.6), trial("degraded"), trial("ok", of=STANDARD))
+    found = tables["battery"]
     counts = battery.kinds(found)
     assert [(row["kind"], row["mechanisms"], row["runs"]) for row in counts] == [(STANDARD.axis, 1, 1), ("driven four-bar", 1, 4)]
     [wrong] = battery.listed(found, battery.SILENT)
     assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
-    [text] = [one["text"] for one in page._of_battery(found)]
+    [text] = [one["text"] for one in page.answers(tables, VIEW)]
     assert "In 5 runs of 2 mechanisms of 2 kinds: 2 silent wrongs and 1 false alarm." in text
     assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
@@ -191,11 +192,13 @@ def test_cells_in_which_nobody_is_right_are_found():
 
 
 def test_settings_are_compared_where_all_were_tried():
-    found = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))["battery"]
+    tables = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))
+    found = tables["battery"]
+    said = lambda battery: [one["text"] for one in page.answers(tables | {"battery": battery}, VIEW) if one["anchor"] == "settings"]
     assert battery.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
-    [answer] = page._helps(found)
-    assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in answer["text"]
-    assert list(page._helps(found[found.setting != "rattle4"])) == []
+    [text] = said(found)
+    assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in text
+    assert said(found[found.setting != "rattle4"]) == []
 
 
 def stale(number, times):

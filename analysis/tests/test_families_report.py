@@ -357,8 +357,10 @@ def test_what_a_smaller_machine_tells_of_a_default_is_said_to_be_at_least_so_muc
     row, by_size = followed(rows, lambda n, fill: "slow", lambda n, fill: "fast" if n == 40 else "slow")
     assert (row["timed"], row["rough"], row["smaller"], row["mean"], row["record"]) == (2, 2, 1, pytest.approx(6), "b/slow")
     assert (by_size["rough"], by_size["smaller"], by_size["worst"], by_size["mean"]) == (1, 0, 4.0, pytest.approx(2))
-    [said] = page._defaults(pandas.DataFrame([row]))
-    assert "“R” (at least " in said["text"] and "“R” (about " in page._defaults(pandas.DataFrame([by_size]))[0]["text"]
+    found = small()
+    for one, how in ((row, "at least"), (by_size, "about")):
+        [said] = [answer["text"] for answer in page.answers(found | {"defaults": pandas.DataFrame([one])}, VIEW) if answer["anchor"] == "defaults"]
+        assert f"“R” ({how} " in said
 
 
 def test_a_default_without_any_time_has_no_loss():

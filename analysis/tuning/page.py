@@ -1,5 +1,9 @@
 # What page.html.j2 shows of settings that were tried, and what they gain or cost.
-from analysis.core.text import number
+from pathlib import Path
+
+from analysis.core.text import answers as said
+
+HERE = Path(__file__).parent
 
 
 def context(tables, view):
@@ -15,14 +19,4 @@ def context(tables, view):
 
 def answers(tables, view):
     rows = tables["alternatives"].loc[lambda rows: rows.status == "ok"]
-    if rows.empty:
-        return [{"text": "Not measured: nothing that was tried was timed.", "anchor": ""}]
-    slower, faster = rows[rows.low > 1], rows[rows.high < 1]
-    most = rows.loc[rows.ratio.idxmax()]
-    text = (f"{rows.alternative.nunique()} other settings of {rows.base.nunique()} variants were timed on {rows.scene.nunique()} scenes. Of {len(rows)} times "
-            f"{len(slower)} are shown to be longer than with the variant's own, {len(faster)} shorter; the longest is {most.alternative} on {most.scene}, "
-            f"{number(most.ratio)} times the time")
-    if len(faster):
-        least = faster.loc[faster.ratio.idxmin()]
-        text += f"; the shortest is {least.alternative} on {least.scene}, {number(least.ratio)} times"
-    return [{"anchor": most.base.replace("/", "-"), "text": text + "."}]
+    return said(HERE / "answers.j2", "Not measured: nothing that was tried was timed.", rows=rows)

@@ -18,6 +18,7 @@ class Problem:
     steps: tuple
     known: str
     judged: tuple
+    link: float = 1.0
     penalty: str = "auto"
     tolerance: str = "auto"
     max_passes: int = 20

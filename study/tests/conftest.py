@@ -3,6 +3,7 @@ import fcntl
 import os
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from study.tests.browser import Browser
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "build" / "mbs"
 FAKE = Path(__file__).with_name("fake_mbs.py")
+PART = "stability"  # whose tables have no times: two runs give the same
 TEMPORARY = tempfile.TemporaryDirectory()
 os.environ["MBS_LOCKS"] = TEMPORARY.name  # apart from the machine's: a real study may run
 
@@ -48,6 +50,27 @@ def smoke(tmp_path_factory, worker_id):
         done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
         assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
     return once(tmp_path_factory, worker_id, "smoke", make)
+
+
+@pytest.fixture(scope="session")
+def program(tmp_path_factory, worker_id):
+    """The real program, slower by a moment, so that kills find it at work."""
+    def make(path):
+        path.write_text(f'#!/bin/bash\nsleep 0.03\nexec {PROGRAM} "$@"\n')
+        path.chmod(0o755)
+    return once(tmp_path_factory, worker_id, "slower_mbs", make)
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory, worker_id, program):
+    """(results of a run of PART that nothing disturbed, how long it took, s). Not to be changed."""
+    def make(path):
+        begin = time.monotonic()
+        done = study("run", "--profile", "smoke", "--part", PART, "--wait", "--results", path / "set", program=program)
+        assert done.returncode == 0, done.stderr
+        (path / "seconds").write_text(str(time.monotonic() - begin))
+    path = once(tmp_path_factory, worker_id, "whole", make)
+    return path / "set", float((path / "seconds").read_text())
 
 
 @pytest.fixture(scope="module")

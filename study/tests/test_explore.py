@@ -4,6 +4,7 @@ import math
 import random
 import re
 import shutil
+from functools import cache
 from urllib.parse import quote
 
 import pandas
@@ -11,7 +12,7 @@ import pytest
 
 from analysis.accuracy.winners import fastest, meeting
 from analysis.core import site, timing
-from analysis.core.files import ROOT, read_json, write_json
+from analysis.core.files import read_json, write_json
 from analysis.explorer import data
 from analysis.explorer.page import others
 from study.tests.test_site import BEYOND, HIDDEN
@@ -67,20 +68,27 @@ To the fastest: median of the ratios of samples taken side by side, and its
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """The set with its page, and another one of another processor beside it, which has the map alone."""
+def made(tmp_path_factory):
+    """(the set with its page, and another one of another processor beside it, which has the map alone; what was read of it)"""
     base = tmp_path_factory.mktemp("sets")
     for name, without in (("first", ("engines", "extremes*")), ("second", ("families*", "accuracy*"))):
         shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns(*without))
     facts = read_json(base / "second" / "set.json")
     write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND, "commit": COMMIT}})
-    site.write_index(base / "first")
-    return base / "first"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(data, "read", cache(data.read))  # takes seconds
+        site.write_index(base / "first")
+        return base / "first", data.read(base / "first")
 
 
-@pytest.fixture(scope="module")
-def found(folder):
-    return data.read(folder)
+@pytest.fixture
+def folder(made):
+    return made[0]
+
+
+@pytest.fixture
+def found(made):
+    return made[1]
 
 
 @pytest.fixture
@@ -114,35 +122,6 @@ def press(browser, name):
 
 def winner(browser):
     return browser.value("explorer.shown.near[0]?.ranking.winner ?? ''")
-
-
-@pytest.fixture(scope="module")
-def shipped(tmp_path_factory):
-    """The main set among all that are stored, with its pages."""
-    base = tmp_path_factory.mktemp("shipped")
-    for stored in (ROOT / "results").glob("*/set.json"):
-        (base / stored.parent.name).mkdir()
-        for path in stored.parent.iterdir():
-            (base / stored.parent.name / path.name).symlink_to(path)
-    site.write_index(base / STORED.name)
-    return base / STORED.name
-
-
-def test_what_is_shipped_is_small_and_whole(shipped):
-    text = (shipped / "explore.html").read_text(encoding="utf-8")
-    assert len(text.encode()) < 3e6
-    assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
-    front = (shipped / "index.html").read_text(encoding="utf-8")
-    assert "<code>study/advise</code>" in front and "`" not in front
-
-
-def test_the_site_is_of_the_commit_that_the_rule_names(browser, shipped):
-    commit = read_json(fragments.RULE)["commit"]
-    assert commit[:10] in (shipped / "index.html").read_text(encoding="utf-8")
-    browser.open(shipped / "explore.html")
-    commits, machines = (browser.value(asked) for asked in (
-        "DATA.sets.map((one) => one.commit)", "[...document.getElementById('machine').options].map((one) => one.text)"))
-    assert {*commits} == {commit} and len(machines) == len(commits) >= 2
 
 
 def test_other_processors_are_shown_with_the_same_commit_where_there_is_one(tmp_path):

@@ -12,11 +12,12 @@ from scipy import special
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_json, write_json
 from analysis.core.registry import ANCHOR
+from analysis.core.text import layout
 from analysis.core.timing import Ranking, Ratio
 from study.tools import fragments
 from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
-from study.tools.merge.main import _said, labels, merge, need_alike
+from study.tools.merge.main import HERE, ORDER, labels, merge, need_alike
 from study.tools.paper import numbers, tables
 
 ONE = Ratio(1.0, 1.0, 1.0)
@@ -127,7 +128,9 @@ def test_gains_are_compared_on_the_same_scenes(monkeypatch):
 def test_what_each_set_says_and_what_they_say_alike_is_counted():
     sure, open_, equal = {"a": ONE, "b": Ratio(1.3, 1.2, 1.4)}, {"a": ONE, "b": Ratio(1.04, 0.9, 1.2)}, {"a": ONE, "b": Ratio(1.02, 1.0, 1.04)}
     other, as_fast = {"b": ONE, "a": Ratio(1.3, 1.2, 1.4)}, {"b": ONE, "a": Ratio(1.01, 1.0, 1.03)}
-    told = list(_said([agreed(sure, sure), agreed(equal, as_fast), agreed(sure, other), agreed(open_, sure)], ["first", "second"]))
+    _, *told, _ = layout(HERE / "said.txt.j2").render(
+        labels=["first", "second"], counts={"all": dict.fromkeys(ORDER, (0, 0))}, layers=agreement.LAYERS, spread={}, held={}, page="",
+        agreed={"all": [agreed(sure, sure), agreed(equal, as_fast), agreed(sure, other), agreed(open_, sure)]}).splitlines()
     assert told == ["  first: 3 decided or with all that are as fast", "  second: 4 decided or with all that are as fast",
                     "  3 so in all, 2 of them alike (67 %)", "  four-bar:4, penalty: a | b"]
 

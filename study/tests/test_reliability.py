@@ -19,35 +19,13 @@ from analysis.core import records, schema
 from analysis.core.files import digest
 from study.core import child
 from study.main import main
-from study.tests.conftest import PROGRAM, ROOT, environment, once, study
+from study.tests.conftest import PART, ROOT, environment, study
 
 pytestmark = pytest.mark.slow
-PART = "stability"  # whose tables have no times: two runs give the same
 COMMAND = [str(ROOT / "study" / "run"), "--profile", "smoke", "--part", PART, "--wait"]
 MARK = "MBS_BATTERY"  # in the environment of all that a run starts
-SEED, CHAINS, KILLS = 20080101, 2, 5  # of these on each of those results in turn: every signal comes to the process and to its group
+SEED, CHAINS, KILLS = 20080101, 2, 4  # of these on each of those results in turn: every signal comes to the process and to its group
 SIGNALS = (signal.SIGKILL, signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
-
-
-@pytest.fixture(scope="module")
-def program(tmp_path_factory, worker_id):
-    """The real program, slower by a moment, so that kills find it at work."""
-    def make(path):
-        path.write_text(f'#!/bin/bash\nsleep 0.03\nexec {PROGRAM} "$@"\n')
-        path.chmod(0o755)
-    return once(tmp_path_factory, worker_id, "slower_mbs", make)
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory, worker_id, program):
-    """(results of a run that nothing disturbed, how long it took, s)"""
-    def make(path):
-        begin = time.monotonic()
-        done = run(path / "set", program)
-        assert done.returncode == 0, done.stderr
-        (path / "seconds").write_text(str(time.monotonic() - begin))
-    path = once(tmp_path_factory, worker_id, "whole", make)
-    return path / "set", float((path / "seconds").read_text())
 
 
 def run(folder, program, **more):

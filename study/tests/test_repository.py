@@ -17,6 +17,8 @@ from study.tools import fragments
 
 TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
+MAIN = fragments.main_set()
+OTHERS = [folder for folder in SETS if folder != MAIN]
 # A measured number: one with a unit of time or a ratio behind it, or that is said to be measured. Steps, durations and masses of
 # scenes are settings.
 MEASURED = re.compile(r"\d(?:[\d.,]*\d)?\s?(?:µs|ns|times (?:faster|slower|less|as (?:fast|slow|long))|× (?:faster|slower))|measured \d|about a second")
@@ -105,26 +107,65 @@ def test_a_stored_set_has_all_parts(folder):
     assert [part for part in parts() if not records.archive_of(folder, part).exists()] == []
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("folder", [pytest.param(folder, id=folder.name, marks=pytest.mark.xdist_group(f"stored {folder.name}")) for folder in SETS])
-def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
-    """The main one with its pages; of the others, which the same code draws, the tables."""
-    copy = shutil.copytree(folder, tmp_path / folder.name)  # whose records are of one machine and commit, or it is not drawn
-    if folder == fragments.main_set():
-        done = study("figures", copy, seconds=1500)
-        assert done.returncode == 0, done.stderr
-        with Browser(tmp_path / "profile", 1300, 900) as browser:
-            for page in sorted(copy.glob("*.html")):
-                browser.open(page)
-                assert browser.value(TALL) == browser.value(HIDDEN) == [], page.name
-        assert [part for part in parts() if not (copy / f"{part}.html").exists()] == []
-    else:
-        for part in parts():
-            site.write_tables(View(copy, part))
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    """The main set, drawn again, among the others that are stored."""
+    base = tmp_path_factory.mktemp("results")
+    for other in OTHERS:
+        (base / other.name).symlink_to(other)
+    copy = shutil.copytree(MAIN, base / MAIN.name)  # whose records are of one machine and commit, or it is not drawn
+    done = study("figures", copy, seconds=1500)
+    assert done.returncode == 0, done.stderr
+    return copy
+
+
+def need_tables_of(folder, copy):
+    """What set and code share, as a set of another state of the code may have more or less. References are integrated anew: another
+    processor takes other steps, so errors differ to their tolerance, and what two tolerances differ by in any digit."""
     for part in parts():
-        # What set and code share, as a set of another state of the code may have more or less. References are integrated anew: another
-        # processor takes other steps, so errors differ to their tolerance, and what two tolerances differ by in any digit.
         for table in read_json(folder / part / schema.DIGESTS)["tables"].keys() & schema.of_part(part).keys():
             there = pandas.read_csv(folder / part / f"{table}.csv", nrows=0).columns.difference(["own_error"])
             drawn, stored = (schema.read_table(one, part, table).filter(there) for one in (copy, folder))
             pandas.testing.assert_frame_equal(drawn, stored, rtol=1e-4, atol=1e-9, obj=f"{part}/{table}")
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("stored main")
+def test_the_main_set_is_drawn_again_as_it_was(shipped, tmp_path):
+    with Browser(tmp_path, 1300, 900) as browser:
+        for page in sorted(shipped.glob("*.html")):
+            browser.open(page)
+            assert browser.value(TALL) == browser.value(HIDDEN) == [], page.name
+    assert [part for part in parts() if not (shipped / f"{part}.html").exists()] == []
+    need_tables_of(MAIN, shipped)
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("stored main")
+def test_what_is_shipped_is_small_and_whole(shipped):
+    text = (shipped / "explore.html").read_text(encoding="utf-8")
+    assert len(text.encode()) < 3e6
+    assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
+    front = (shipped / "index.html").read_text(encoding="utf-8")
+    assert "<code>study/advise</code>" in front and "`" not in front
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("stored main")
+def test_the_site_is_of_the_commit_that_the_rule_names(browser, shipped):
+    commit = read_json(fragments.RULE)["commit"]
+    assert commit[:10] in (shipped / "index.html").read_text(encoding="utf-8")
+    browser.open(shipped / "explore.html")
+    commits, machines = (browser.value(asked) for asked in (
+        "DATA.sets.map((one) => one.commit)", "[...document.getElementById('machine').options].map((one) => one.text)"))
+    assert {*commits} == {commit} and len(machines) == len(commits) >= 2
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("stored others")  # in one process: of what both ask alike, the references, each is integrated once
+@pytest.mark.parametrize("folder", OTHERS, ids=lambda folder: folder.name)
+def test_the_same_code_makes_the_tables_of_another_set_as_they_were(folder, tmp_path):
+    copy = shutil.copytree(folder, tmp_path / folder.name)
+    for part in parts():
+        site.write_tables(View(copy, part))
+    need_tables_of(folder, copy)

@@ -8,18 +8,15 @@ import pytest
 from analysis.core import records, schema
 from analysis.core.files import StudyError, read_json, write_json
 from study.core import studyset
-from study.tests.conftest import ROOT, study
+from study.tests.conftest import PART, ROOT
 from study.tools import fragments, store
 
 pytestmark = pytest.mark.slow
-PART = "stability"
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("measured") / "set"
-    done = study("run", "--profile", "smoke", "--part", PART, "--results", folder)
-    assert done.returncode == 0, done.stderr
+def measured(tmp_path_factory, whole):
+    folder = Path(shutil.copytree(whole[0], tmp_path_factory.mktemp("measured") / "set"))
     for path in (folder / "set.json", *(folder / "contexts").glob("*.json")):  # the tree of a developer is dirty
         found = read_json(path)
         clean = {"dirty": "false", "cpu_model": "AMD EPYC (family 25, model 17, stepping 1)"}

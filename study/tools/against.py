@@ -3,11 +3,13 @@
 import json
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import pandas
 
 from analysis.core import timing
 from analysis.core.files import ROOT, StudyError, digest, write
+from analysis.core.text import layout
 from study.core import child, locks
 from study.core.cell import Cell, by_environment
 from study.core.executor import program_of
@@ -55,11 +57,7 @@ def against(arguments):
         lab.display.end()
     table = shelf.table(rows, "ratios")
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
-    print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
-    for row in table.itertuples():
-        print(f"{row.implementation:28} {row.scene:14} " + (row.reason[:80] if row.reason else (
-            f"{row.old_us:10.3g} -> {row.new_us:10.3g} us  {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})")))
-    print(f"table: {folder / 'ratios.csv'}")
+    print(layout(Path(__file__).with_name("against.txt.j2")).render(revision=revision, rows=table.itertuples(), table=folder / "ratios.csv"))
 
 
 def _resolve(name):

@@ -11,13 +11,7 @@ SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
 LIBRARIES = read_yaml(SKELETON.with_name("libraries.yaml"))
 NAME = re.compile(r"[a-z][a-z0-9_]*")
-KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const
-consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit
-export extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
-public register reinterpret_cast requires return short signed sizeof static static_assert static_cast struct switch template this thread_local
-throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
-TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test", "harness", "engines",
-         "registry", "implementation", "simulation", "available", "unavailable"}  # names of the harness, of C++ and of CMake
+NAMES = read_yaml(SKELETON.with_name("names.yaml"))
 
 
 def new(arguments):
@@ -29,7 +23,7 @@ def new(arguments):
     folder = ROOT / "implementations" / options.name
     if not NAME.fullmatch(options.name):
         raise StudyError(f"'{options.name}' is no name: a letter from a to z, then such letters, digits or _")
-    if options.name in KEYWORDS | TAKEN or re.match("(mbs|implementation)_", options.name) or "__" in options.name:
+    if options.name in (*NAMES["keywords"], *NAMES["taken"]) or re.match("(mbs|implementation)_", options.name) or "__" in options.name:
         raise StudyError(f"'{options.name}' is a name of C++ or of the harness: take another name")
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")

@@ -5,9 +5,11 @@ import os
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 from analysis.core import records, schema
 from analysis.core.files import ROOT, StudyError, read_object
+from analysis.core.text import layout
 from analysis.core.view import parts
 from study.core import locks
 from study.core.options import Parser, directory
@@ -41,19 +43,13 @@ def store(arguments):
         if len(stored := sorted(path.parent.name for path in RESULTS.glob("*/set.json"))) >= MOST:
             raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
         pictures = _build(studyset, name)
-    files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
-    print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
-    if (folder / "added").exists():
-        print("what study/add measured stays where it is: it is of another tree")
+    known = {"name": name, "sizes": [path.stat().st_size for path in (RESULTS / name).rglob("*") if path.is_file()], "pictures": pictures,
+             "added": (folder / "added").exists()}
     try:
-        for path in fragments.refresh():
-            print(f"filled anew: {path.relative_to(ROOT)}")
+        known["texts"] = [path.relative_to(ROOT) for path in fragments.refresh()]
     except StudyError as error:
-        print(f"texts are not filled anew: {error}")
-    print(f"to commit it: git add results/{name}")
-    if pictures:  # others that study/figures draws are ignored
-        print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
-    print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")
+        known |= {"texts": [], "why": error}
+    print(layout(Path(__file__).with_name("store.txt.j2")).render(known))
 
 
 def short(processor):

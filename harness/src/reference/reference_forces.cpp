@@ -9,9 +9,8 @@ namespace mbs {
 namespace {
 
 using Real = ReferenceSimulation::Real;
-using Triple = std::array<Real, 3>;
+using Triple = ReferenceSimulation::Triple;
 
-Real dot(const Triple& x, const Triple& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
 Triple cross(const Triple& x, const Triple& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
@@ -20,7 +19,9 @@ Triple scaled(Real factor, const Triple& x) {
 }
 
 /// (z x w) / (w . w)
-Triple turning(const Triple& z, const Triple& w) { return scaled(1 / dot(w, w), cross(z, w)); }
+Triple turning(const Triple& z, const Triple& w) {
+  return scaled(1 / ReferenceSimulation::dot(w, w), cross(z, w));
+}
 
 /// c(x) and c'(x): Eq. (19).
 std::pair<Real, Real> evaluate(const Curve& curve, Real x) {

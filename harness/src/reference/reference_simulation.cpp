@@ -21,9 +21,8 @@ ReferenceSimulation::ReferenceSimulation(const Model& model, const StepSettings&
 namespace {
 
 using Real = ReferenceSimulation::Real;
-using Triple = std::array<Real, 3>;
+using Triple = ReferenceSimulation::Triple;
 
-Real dot(const Triple& x, const Triple& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
 Triple minus(const Triple& x, const Triple& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
 
 /// B w and B^T u; for a dot constraint B is the identity.

@@ -25,6 +25,11 @@ class ReferenceSimulation final : public Simulation {
  public:
   using Real = long double;
   using Vector = std::vector<Real>;
+  using Triple = std::array<Real, 3>;
+
+  static Real dot(const Triple& x, const Triple& y) {
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+  }
 
   /// `model` must outlive the simulation.
   ReferenceSimulation(const Model& model, const StepSettings& settings);
@@ -51,8 +56,6 @@ class ReferenceSimulation final : public Simulation {
     Real value;
   };
   using Row = std::vector<Entry>;  // of the Jacobian; a coordinate may occur more than once
-
-  using Triple = std::array<Real, 3>;
 
   /// A spring, torsion spring or law at q, v: Eqs. (11), (18).
   struct Element {

@@ -2,8 +2,9 @@
 # step, until it meets the smallest error or costs too much.
 import math
 from argparse import Namespace
+from pathlib import Path
 
-from analysis.core.files import StudyError
+from analysis.core.files import StudyError, from_yaml
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.cell import scene_name
@@ -15,18 +16,7 @@ from study.tools.advise.probe import catalogue, fits, probe, serving
 from study.tools.advise.runner import EXACT, folder_of
 from study.tools.advise.truth import FIRST_STEP, Truth
 
-PROBLEMS = "harness/scenes/problems"
-SCENES = {  # (kind, s): scenes
-    ("four-bar", 5): ("four-bar:1", "four-bar:5", "four-bar:10", "four-bar:40"), ("ladder", 4): ("ladder:12", "ladder:40"),
-    ("grid", 3): ("grid:5x5", "grid:10x10"), ("cloth", 3): ("cloth:4x5", "cloth:10x10"), ("truss", 3): ("truss:3", "truss:8"),
-    ("vehicle", 4): ("vehicle:8", "vehicle:40"), ("robot", 4): ("robot:8", "robot:30"), ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"),
-    ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"), ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"),
-    ("star", 4): ("star:10", "star:100"), ("loop", 4): ("loop:20", "loop:60"), ("chain", 2): ("chain:20", "chain:60"),
-    ("standard problems", 5): tuple(f"{PROBLEMS}/{name}.json" for name in (
-        "a01_pendulum", "a04_bricard", "a05_governor", "slider_crank", "spatial_slider_crank", "half_car", "double_four_bar")),
-    ("standard problems", 0.03): (f"{PROBLEMS}/a03_andrews.json",),
-    ("standard problems", 1): (f"{PROBLEMS}/chain_200.json", f"{PROBLEMS}/grid_10.json"),
-    ("large, n about 2000", 1): ("tree:1000", "star:500", "ladder:500")}
+SCENES = from_yaml(Path(__file__).with_name("questions.yaml").read_text())
 OTHERS, OTHERS_DURATION = "other scenes", 4.0  # kind; s
 SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
 CERTAIN = 0.1             # of an error: how well the motion must be known
@@ -72,7 +62,7 @@ def validate(options, ask, runner_of, results):
 
 def questions(asked):
     """[(kind, scene, s)]: all of SCENES, or the kinds and scenes of it that are asked for, and any other scene."""
-    known = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes]
+    known = [(one["kind"], scene, one["duration"]) for one in SCENES for scene in one["scenes"]]
     others = [scene_name(text) for text in asked if not any(text in one for one in known)]
     return [one for one in known if not asked or one[0] in asked or one[1] in asked] + [
         (OTHERS, scene, min(OTHERS_DURATION, describe(scene)["drivers_end"] or OTHERS_DURATION)) for scene in others]

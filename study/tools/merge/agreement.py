@@ -110,6 +110,7 @@ class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,)
     """`machines`: for each set its Ranking; `day`: a variance that days add to a ratio's logarithm. A contender is inside on a machine if it is not
     shown to be over 5 % behind the fastest there, where all ratios that the cell has on all machines are asked at once [Holm]."""
     winners = property(lambda self: [one.winner for one in self.machines])
+    settled = property(lambda self: all(one.settled for one in self.machines))
     # Of each machine, those inside.
     sets = property(lambda self: [[name for name, chance in one.items() if chance > 1 - CONFIDENCE] for one in self.chances])
     # Those inside on all machines: the equivalence set that holds on all.

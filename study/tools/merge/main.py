@@ -65,8 +65,8 @@ def merge(arguments):
         mechanisms=agreement.shares(libraries), claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
     if fresh:
         write_json(options.to / "fresh.json", {"sets": [one.folder.name for one in sets], "run": _about(fresh), "held": known["held"]})
-    said = {layer: [*_said([one for one in agreed if one.question.layer == layer], machines)] for layer in counts}
-    print(layout(HERE / "said.txt.j2").render(known, said=said, page=options.to / "index.html"))
+    print(layout(HERE / "said.txt.j2").render(known, labels=machines, page=options.to / "index.html", agreed={
+        layer: [one for one in agreed if one.question.layer == layer] for layer in counts}))
 
 
 def _drawn(libraries, sets, path):
@@ -93,16 +93,6 @@ def _drawn(libraries, sets, path):
     save(figure, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
     plt.close(figure)
     return base64.b64encode(path.read_bytes()).decode()
-
-
-def _said(agreed, machines):
-    """On how many cells each set says who is fastest, or who all are as fast, and how many of these all say alike."""
-    for place, label in enumerate(machines):
-        yield f"  {label}: {sum(one.machines[place].settled for one in agreed)} decided or with all that are as fast"
-    both = [one for one in agreed if all(ranking.settled for ranking in one.machines)]
-    alike = sum(one.alike for one in both)
-    yield f"  {len(both)} so in all, {alike} of them alike" + (f" ({100 * alike / len(both):.0f} %)" if both else "")
-    yield from (f"  {one.question.scene}, {one.question.form}: {' | '.join(one.winners)}" for one in both if not one.alike)
 
 
 def _about(fresh):
