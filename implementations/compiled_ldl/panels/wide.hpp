@@ -74,7 +74,9 @@ class WideFronts {
   template <int P>
   static void store_pivots(F* right, const Eight& x);
   /// Rows of the k-th eight pivots.
-  static int rows_of(const Wide& front, int k) { return std::min(kPanel, front.pivots - k * kPanel); }
+  static int rows_of(const Wide& front, int k) {
+    return std::min(kPanel, front.pivots - k * kPanel);
+  }
   template <int kRows>
   void scale_rows(const Wide& front, const F* rows, int stride, int columns);
   template <int P, int R>
