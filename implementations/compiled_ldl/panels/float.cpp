@@ -1,6 +1,7 @@
 // Panels in float.
 #include "panels/kernels.hpp"
 #include "panels/tables.hpp"
+#include "panels/wide_kernels.hpp"
 
 namespace mbs::compiled_ldl {
 

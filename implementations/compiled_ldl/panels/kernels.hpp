@@ -1,7 +1,8 @@
-// Panels: elimination and substitution. Part of panels.hpp.
+// Panels: elimination and substitution of a run, and which kernels it has. Part of panels.hpp.
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "panels/block.hpp"
 #include "panels/panels.hpp"
@@ -9,31 +10,6 @@
 namespace mbs::compiled_ldl {
 
 // Elimination of a run of panels.
-
-template <typename F>
-void Panels<F>::start() {
-  const F* from = constants_.data() + kMargin;
-  if (all_changed_) {
-    std::copy(constants_.begin(), constants_.end(), matrix_.begin());
-    all_changed_ = false;
-    return;
-  }
-  constexpr int L = kWidest<F>;
-  for (const Range& range : program_.changing) {
-    for (int i = range.begin; i < range.end; i += L)
-      store<F, L>(matrix() + i, load<F, L>(from + i));
-  }
-}
-
-template <typename F>
-bool Panels<F>::factorize_and_solve(F* y, Part part) {
-  bool accepted = true;
-  const auto runs = runs_of(part);
-  for (const Run& run : runs) accepted &= (this->*run.eliminate)(run, y);
-  all_changed_ |= !accepted;  // what is not a number may be anywhere
-  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
-  return accepted;
-}
 
 template <typename F>
 template <int P, int L, bool kDefinite>
@@ -266,13 +242,6 @@ void Panels<F>::update_two(const Panel& panel) {
 
 // Substitution with the factors there are.
 
-template <typename F>
-void Panels<F>::solve(F* y, Part part) {
-  const auto runs = runs_of(part);
-  for (const Run& run : runs) (this->*run.forward)(run, y);
-  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
-}
-
 /// z = D⁻¹ M y in place of the pivots' y; y −= C L⁻ᵀ z below.
 template <typename F>
 template <int P, int L>
@@ -330,28 +299,37 @@ void Panels<F>::backward(const Run& run, F* y) {
   }
 }
 
-// Wide fronts.
+// Which of these a run has.
 
 template <typename F>
-template <int P, bool kDefinite>
-bool Panels<F>::eliminate_wide(const Run& run, F* y) {
-  bool accepted = true;
-  for (int i = run.begin; i < run.end; ++i) {
-    accepted &= wide_.template eliminate<P, kDefinite>(i, matrix(), y);
+template <int P>
+void Panels<F>::choose_kernels(Run& run, const FrontShape& shape) const {
+  if (shape.wide) return set_wide_kernels<P>(run);
+  switch (shape.lanes) {
+    case 0:
+      set_kernels<P, 0>(run);
+      break;
+    case 2:
+      set_kernels<P, 2>(run);
+      break;
+    case 4:
+      set_kernels<P, 4>(run);
+      break;
+    case 8:
+      set_kernels<P, 8>(run);
+      break;
+    default:
+      throw std::logic_error("no kernel takes so many rows at a time");
   }
-  return accepted;
 }
 
 template <typename F>
-template <int P>
-void Panels<F>::forward_wide(const Run& run, F* y) {
-  for (int i = run.begin; i < run.end; ++i) wide_.template forward<P>(i, y);
-}
-
-template <typename F>
-template <int P>
-void Panels<F>::backward_wide(const Run& run, F* y) {
-  for (int i = run.end - 1; i >= run.begin; --i) wide_.template backward<P>(i, y);
+template <int P, int L>
+void Panels<F>::set_kernels(Run& run) const {
+  run.eliminate = definite_ ? &Panels::template eliminate<P, L, true>
+                            : &Panels::template eliminate<P, L, false>;
+  run.forward = &Panels::template forward<P, L>;
+  run.backward = &Panels::template backward<P, L>;
 }
 
 }  // namespace mbs::compiled_ldl

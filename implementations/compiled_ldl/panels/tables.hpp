@@ -1,4 +1,4 @@
-// Panels: fronts in runs of one shape, and the kernels of each. Part of panels.hpp.
+// Panels: fronts in runs of one shape; factorization and solve, run by run. Part of panels.hpp.
 #pragma once
 
 #include <stdexcept>
@@ -106,44 +106,38 @@ void Panels<F>::add_run(const FrontShape& shape, int last) {
   runs_.push_back(run);
 }
 
+// Factorization and solve.
+
 template <typename F>
-template <int P>
-void Panels<F>::choose_kernels(Run& run, const FrontShape& shape) const {
-  if (shape.wide) return set_wide_kernels<P>(run);
-  switch (shape.lanes) {
-    case 0:
-      set_kernels<P, 0>(run);
-      break;
-    case 2:
-      set_kernels<P, 2>(run);
-      break;
-    case 4:
-      set_kernels<P, 4>(run);
-      break;
-    case 8:
-      set_kernels<P, 8>(run);
-      break;
-    default:
-      throw std::logic_error("no kernel takes so many rows at a time");
+void Panels<F>::start() {
+  const F* from = constants_.data() + kMargin;
+  if (all_changed_) {
+    std::copy(constants_.begin(), constants_.end(), matrix_.begin());
+    all_changed_ = false;
+    return;
+  }
+  constexpr int L = kWidest<F>;
+  for (const Range& range : program_.changing) {
+    for (int i = range.begin; i < range.end; i += L)
+      store<F, L>(matrix() + i, load<F, L>(from + i));
   }
 }
 
 template <typename F>
-template <int P, int L>
-void Panels<F>::set_kernels(Run& run) const {
-  run.eliminate = definite_ ? &Panels::template eliminate<P, L, true>
-                            : &Panels::template eliminate<P, L, false>;
-  run.forward = &Panels::template forward<P, L>;
-  run.backward = &Panels::template backward<P, L>;
+bool Panels<F>::factorize_and_solve(F* y, Part part) {
+  bool accepted = true;
+  const auto runs = runs_of(part);
+  for (const Run& run : runs) accepted &= (this->*run.eliminate)(run, y);
+  all_changed_ |= !accepted;  // what is not a number may be anywhere
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
+  return accepted;
 }
 
 template <typename F>
-template <int P>
-void Panels<F>::set_wide_kernels(Run& run) const {
-  run.eliminate = definite_ ? &Panels::template eliminate_wide<P, true>
-                            : &Panels::template eliminate_wide<P, false>;
-  run.forward = &Panels::template forward_wide<P>;
-  run.backward = &Panels::template backward_wide<P>;
+void Panels<F>::solve(F* y, Part part) {
+  const auto runs = runs_of(part);
+  for (const Run& run : runs) (this->*run.forward)(run, y);
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
 }
 
 }  // namespace mbs::compiled_ldl

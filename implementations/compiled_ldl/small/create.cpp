@@ -1,6 +1,6 @@
-// Simulations of small scenes, if the settings are the default ones.
+// Simulations of small scenes, if the settings are the default ones; those of up to 10 rows.
 #include "simulations.hpp"
-#include "small/sizes.hpp"
+#include "small/stepper.hpp"
 
 namespace mbs::compiled_ldl {
 
@@ -9,7 +9,9 @@ std::unique_ptr<Simulation> create_small(const Model& model, const StepSettings&
       settings.tangent != TangentReuse::none || settings.geometric_stiffness) {
     return nullptr;
   }
-  if (auto simulation = create_up_to_10(model, settings)) return simulation;
+  auto simulation = model.dimension() == 2 ? create_of_size<2, 2, 4, 6, 8, 10>(model, settings)
+                                           : create_of_size<3, 4, 6, 10>(model, settings);
+  if (simulation) return simulation;
   // Where a row takes four registers, dense is faster only what fronts would take as one.
   const int size = model.variables();
   if (kRegisterDoubles < 8 && size > 12 && size <= 16 &&

@@ -1,6 +1,7 @@
 // Small scenes: "The step" of paper/README.md with everything dense, in double precision.
 #pragma once
 
+#include <memory>
 #include <type_traits>
 
 #include "mbs/simulation.hpp"
@@ -193,5 +194,16 @@ void SmallStepper<N, D>::project(double* x, const double* v, const double* given
   corrected.add(1.0, factors_.solve(y));
   corrected.put(x);
 }
+
+/// Of the first of the sizes N, More that the model fits in; nothing if it is larger than all.
+template <int D, int N, int... More>
+std::unique_ptr<Simulation> create_of_size(const Model& model, const StepSettings& settings) {
+  if (model.variables() <= N) return std::make_unique<SmallStepper<N, D>>(model, settings);
+  if constexpr (sizeof...(More) > 0) return create_of_size<D, More...>(model, settings);
+  return nullptr;
+}
+
+/// Nothing if the model has more than 16 rows.
+std::unique_ptr<Simulation> create_up_to_16(const Model& model, const StepSettings& settings);
 
 }  // namespace mbs::compiled_ldl

@@ -1,5 +1,5 @@
 // Small scenes of 11 to 16 rows.
-#include "small/sizes.hpp"
+#include "small/stepper.hpp"
 
 namespace mbs::compiled_ldl {
 
