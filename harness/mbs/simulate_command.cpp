@@ -132,10 +132,13 @@ int simulate(const SimulateOptions& options) {
     for (const std::string& warning : warnings) fmt::print(stderr, "mbs: warning: {}\n", warning);
     return 0;
   }
+  std::vector<std::string> hints = warnings;
+  if (hints.empty() && summary.status == RunStatus::diverged) {
+    hints.emplace_back("a shorter --step may help");
+  }
   fmt::print(stderr, "mbs: {} on {}: {}{}: {}{}\n", variant.name, scene.name,
              to_string(summary.status), when("at"), summary.reason,
-             warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
-  if (summary.status == RunStatus::diverged) fmt::print(stderr, "mbs: a shorter --step may help\n");
+             hints.empty() ? "" : fmt::format(" ({})", fmt::join(hints, "; ")));
   return 1;
 }
 

@@ -272,7 +272,7 @@ TEST(ControlsProgram, SimulateNeverCallsNanOk) {
   }
   EXPECT_EQ(run.errors,
             "mbs: control/nan_after_100 on four-bar:2: diverged at t = 0.12625 s: the state is not "
-            "finite\nmbs: a shorter --step may help\n");
+            "finite (a shorter --step may help)\n");
 }
 
 }  // namespace
