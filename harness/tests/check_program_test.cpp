@@ -119,6 +119,12 @@ TEST(CheckProgram, AgreesOnScenesWithoutConstraints) {
   std::filesystem::remove(scene);
 }
 
+TEST(CheckProgram, ALaneThatIsLostAloneTooIsNoDefectOfItsBatch) {
+  const auto run = test::run_mbs(
+      "check four-bar:10 --implementation compiled_chains/sweeps --scheme rattle6 --steps 40");
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;  // lane 8 of 11, at a singular position
+}
+
 /// The reference fails with this penalty factor, and would say so.
 TEST(CheckProgram, RunsNoReferenceWhereNobodyServesTheScene) {
   const auto run = test::run_mbs("check bodies:2,dimension=3 --penalty 1e300 --implementation minimal_dense");

@@ -94,6 +94,11 @@ void run_beside(Running& running, const Variant& variant, const VariedLanes& lan
       if (k == kSpoiled || batch->is_retired(k)) continue;
       const auto i = static_cast<std::size_t>(k);
       const StepOutcome outcome = alone[i]->step();
+      constexpr auto kLost = StepStatus::factorization_failed;
+      if (outcomes[i].status == kLost && outcome.status == kLost) {
+        batch->retire(k);  // its motion is lost either way
+        continue;
+      }
       running.passes += outcomes[i].passes;
       running.expected_passes += outcome.passes;
       batch->get_state(k, state);

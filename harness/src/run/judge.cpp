@@ -263,32 +263,31 @@ std::array<Judge::Bounded, 5> Judge::bounded() const {
   constexpr AccurateBounds accurate;
   return {{{so_far_.position_error.value_or(0.0), accurate.position_error, "position error"},
            {energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift"},
-           {part_drift(), accurate.energy_drift, "energy drift of a part"},
+           {part_drift(), accurate.energy_drift, "energy drift of a part", &Judge::drifting_part},
            {so_far_.imbalance.value_or(0.0), accurate.energy_drift,
             "energy off the work of dampers, drivers and forces by"},
-           {so_far_.relative_violation, accurate.constraint_violation, "constraint violation"}}};
+           {so_far_.relative_violation, accurate.constraint_violation, "constraint violation",
+            &Judge::violated_row}}};
+}
+
+std::string Judge::drifting_part() const {
+  const auto part = std::ranges::max_element(so_far_.parts, {}, &EnergyFigures::drift);
+  const auto place = static_cast<std::size_t>(part - so_far_.parts.begin());
+  return ", that of " + printable(parts_->name(place), 60);
+}
+
+std::string Judge::violated_row() const {
+  return ", most of " + row_name(scene_->model, so_far_.most_violated);
 }
 
 bool Judge::is_degraded() const { return std::ranges::any_of(bounded(), &Bounded::is_beyond); }
 
 std::string Judge::degradation() const {
   std::vector<std::string> beyond;
-  const auto figures = bounded();
-  const auto add = [&](std::size_t figure, const std::string& where = "") {
-    const auto& [value, bound, what] = figures[figure];
-    beyond.push_back(fmt::format("{} {:.1e} (ok to {:g}){}", what, value, bound, where));
-  };
-  for (const std::size_t figure : {0, 1}) {
-    if (figures[figure].is_beyond()) add(figure);
-  }
-  if (figures[2].is_beyond()) {
-    const auto part = std::ranges::max_element(so_far_.parts, {}, &EnergyFigures::drift);
-    const auto place = static_cast<std::size_t>(part - so_far_.parts.begin());
-    add(2, ", that of " + printable(parts_->name(place), 60));
-  }
-  if (figures[3].is_beyond()) add(3);
-  if (figures[4].is_beyond()) {
-    add(4, ", most of " + row_name(scene_->model, so_far_.most_violated));
+  for (const Bounded& one : bounded()) {
+    if (!one.is_beyond()) continue;
+    beyond.push_back(fmt::format("{} {:.1e} (ok to {:g}){}", one.what, one.value, one.bound,
+                                 one.where != nullptr ? (this->*one.where)() : ""));
   }
   return fmt::format("{}", fmt::join(beyond, ", "));
 }

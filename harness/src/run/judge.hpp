@@ -116,9 +116,12 @@ class Judge {
   struct Bounded {
     double value, bound;
     const char* what;
-    bool is_beyond() const { return !(value <= bound); }
+    std::string (Judge::*where)() const = nullptr;
+    [[nodiscard]] bool is_beyond() const { return !(value <= bound); }
   };
   [[nodiscard]] std::array<Bounded, 5> bounded() const;
+  [[nodiscard]] std::string drifting_part() const;
+  [[nodiscard]] std::string violated_row() const;
   std::string judge_energy(double t, const State& state);
   /// Of the constraint that is violated most in the last judged state.
   [[nodiscard]] int most_violated_row() const;
