@@ -17,8 +17,12 @@ double widening(int pivots, int border) { return pivots > kPanel && border > 0 ?
 
 }  // namespace
 
+double turns_of_pack(int width) {
+  return width == 1 ? 1.0 : static_cast<double>(width) / kRegisterDoubles;
+}
+
 /// Constants fitted to measurements of the standard scenes and of filled four-bars, each in several
-/// orders, with AVX-512. Shorter registers take a pack of eight numbers in turns.
+/// orders, with AVX-512.
 FrontTime front_time(int pivots, int border, int nodes, int width) {
   if (width == 1) {  // many side by side: arithmetic counts, others fill what is left
     const double rows = pivots + border;
@@ -28,7 +32,7 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
   for (int from = 0; from < pivots; from += kPanel) {
     const int panel = std::min(kPanel, pivots - from), inside = pivots - from - panel;
     const double packs =
-        std::ceil(static_cast<double>(inside + border) / width) * width / kRegisterDoubles;
+        std::ceil(static_cast<double>(inside + border) / width) * turns_of_pack(width);
     time.work += panel * (20.0 + packs * (panel + 0.35 * inside));
     time.latency += 5.0 * std::ceil(panel / 2.0);  // a division for two pivots
     if (border == 2 && nodes == 1 && pivots <= kPanel) {

@@ -33,6 +33,9 @@ struct FrontTime {
   double work = 0.0, latency = 0.0;
 };
 
+/// How often registers are filled for a pack of `width` numbers; one number is no pack.
+double turns_of_pack(int width);
+
 /// Of a front with `pivots` columns and `border` more rows, which are those of `nodes` nodes.
 /// `width`: how many numbers a processor handles at once.
 FrontTime front_time(int pivots, int border, int nodes, int width);
