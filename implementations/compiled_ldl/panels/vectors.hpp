@@ -118,6 +118,14 @@ typename Short<F, N>::Type first_lanes(const typename Short<F, N>::Type& v, int 
   return first_lanes_or<F, N>(v, typename Short<F, N>::Type{}, count);
 }
 
+/// Has a vector in its register from here on: compilers load it again for every product otherwise.
+template <typename V>
+[[gnu::always_inline]] inline void hold([[maybe_unused]] V& x) {
+#ifdef __x86_64__
+  asm("" : "+v"(x));
+#endif
+}
+
 /// Stores the first P lanes only, in pieces that later loads can be forwarded from.
 template <int P, typename F, typename V>
 inline void store_first(F* x, const V& v) {

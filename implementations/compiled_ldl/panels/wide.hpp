@@ -38,7 +38,9 @@ class WideFronts {
 
  private:
   static constexpr int L = kWidest<F>;
-  static constexpr int kPairs = kRegisterDoubles == 8 ? 2 : 1;  // vectors of rows at a time
+  // Vectors of rows, and columns, whose sums are in registers at a time: 16 of 32, 12 of 16.
+  static constexpr int kVectors = kRegisterDoubles == 8 ? 2 : 3;
+  static constexpr int kColumns = kRegisterDoubles == 8 ? 8 : 4;
   static constexpr int kBlock = kPanel * kPanel;
   using W = typename Short<F, L>::Type;
   using Eight = typename Short<F, kPanel>::Type;
@@ -53,17 +55,17 @@ class WideFronts {
     int rows = 0;                // where Program::border_rows has its border
     int strips_begin = 0, strips_end = 0;
   };
-  /// C L⁻ᵀ of some rows: its first column, how far apart columns are, and vectors of rows.
+  /// C L⁻ᵀ of some rows: its first column, and how far apart columns are.
   struct Rows {
     F* at;
-    int stride, next;
+    int stride;
   };
 
   /// Of the k-th eight pivots.
   Rows pivot_rows(const Wide& front, int k) {
-    return {factors_.data() + front.blocks + kBlock / 2 * k * (k - 1), kPanel, kBlock * k};
+    return {factors_.data() + front.blocks + kBlock / 2 * k * (k - 1), kPanel};
   }
-  Rows border_rows(const Wide& front) { return {factors_.data() + front.columns, front.length, L}; }
+  Rows border_rows(const Wide& front) { return {factors_.data() + front.columns, front.length}; }
   F* factors_of(const Wide& front, int k) {
     return factors_.data() + front.factors + 2 * kBlock * k;
   }
@@ -73,22 +75,21 @@ class WideFronts {
   void add_border(const Wide& front, F* y) const;
   template <int P>
   static void store_pivots(F* right, const Eight& x);
-  /// Rows of the k-th eight pivots.
-  static int rows_of(const Wide& front, int k) {
-    return std::min(kPanel, front.pivots - k * kPanel);
-  }
   template <int kRows>
   void scale_rows(const Wide& front, const F* rows, int stride, int columns);
-  template <int P, int R>
-  static void take_up(Rows rows, const F* scaled, int columns, W (&s)[P][R]);
+  template <int kFrom, int kTo, int P, int R>
+  static void take_up(F* const (&rows)[R], int stride, const F* scaled, int columns, W (&s)[P][R]);
   template <int P, bool kDefinite>
   static bool eliminate_block(const F* block, F* factors, F* inverses, F (&lower)[P][kPanel],
                               F* z_of);
   template <int P, bool kDefinite>
   bool eliminate_panel(const Wide& front, const F* matrix, int k, F* right);
+  template <int P, typename Vector>
+  void finish_all(int stride, const F* target, const Vector& vector, int rows_stride, int count,
+                  int from, const F* l, const F* z, F* right);
   template <int P, int R>
-  void finish_rows(int stride, const F* target, Rows rows, int from, const F* l, const F* z,
-                   F* right);
+  void finish_rows(int stride, const F* target, F* const (&rows)[R], int rows_stride, int from,
+                   const F* l, const F* z, F* right);
   template <int P>
   void forward_panel(const Wide& front, int k, F* right);
   template <int P>

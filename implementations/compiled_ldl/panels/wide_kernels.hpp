@@ -83,20 +83,24 @@ void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int stride, int
   }
 }
 
-/// s −= C D⁻¹ Cᵀ of the first so many columns: C of R vectors of rows, D⁻¹ Cᵀ of P columns.
+/// s −= C D⁻¹ Cᵀ of the first so many columns: C of R vectors of rows, D⁻¹ Cᵀ of the columns kFrom
+/// … kTo − 1.
 template <typename F>
-template <int P, int R>
-[[gnu::always_inline]] inline void WideFronts<F>::take_up(Rows rows, const F* scaled, int columns,
+template <int kFrom, int kTo, int P, int R>
+[[gnu::always_inline]] inline void WideFronts<F>::take_up(F* const (&rows)[R], int stride,
+                                                          const F* scaled, int columns,
                                                           W (&s)[P][R]) {
-  const F* column = rows.at;
-  for (int j = 0; j < columns; ++j, column += rows.stride, scaled += kPanel) {
+  for (int j = 0; j < columns; ++j, scaled += kPanel) {
     W c[R];
-#pragma GCC unroll 2
-    for (int r = 0; r < R; ++r) c[r] = load<F, L>(column + r * rows.next);
+#pragma GCC unroll 3
+    for (int r = 0; r < R; ++r) {
+      c[r] = load<F, L>(rows[r] + j * stride);
+      hold(c[r]);
+    }
 #pragma GCC unroll 8
-    for (int k = 0; k < P; ++k) {
+    for (int k = kFrom; k < kTo; ++k) {
       const F of_column = scaled[k];
-#pragma GCC unroll 2
+#pragma GCC unroll 3
       for (int r = 0; r < R; ++r) s[k][r] -= c[r] * of_column;
     }
   }
@@ -146,7 +150,7 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
       W s[P][1];
 #pragma GCC unroll 8
       for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
-      take_up<P, 1>({rows.at + i, rows.stride, 0}, scaled_.data(), from, s);
+      take_up<0, P, P, 1>({rows.at + i}, rows.stride, scaled_.data(), from, s);
 #pragma GCC unroll 8
       for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
     }
@@ -166,65 +170,72 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F
                                              factors_.data() + front.inverses + from, l, z_of);
   }
   if constexpr (P == kPanel) {
-    int b = k + 1;
-    for (; kPairs == 2 && L == kPanel && b + 1 < front.panels; b += 2) {
-      finish_rows<P, kPairs>(front.stride, target + b * kPanel, pivot_rows(front, b), from, l[0],
-                             z_of, right + b * kPanel);
-    }
-    for (; b < front.panels; ++b) {
-      rows = pivot_rows(front, b);
-      for (int i = 0; i < rows_of(front, b); i += L, rows.at += L) {
-        finish_rows<P, 1>(front.stride, target + b * kPanel + i, rows, from, l[0], z_of,
-                          right + b * kPanel + i);
-      }
-    }
+    const int count = (front.pivots - from - kPanel + L - 1) / L;
+    const auto vector = [&](int i) {
+      const int row = from + kPanel + i * L;
+      return pivot_rows(front, row / kPanel).at + row % kPanel;
+    };
+    finish_all<P>(front.stride, target + from + kPanel, vector, kPanel, count, from, l[0], z_of,
+                  z_of + kPanel);
   }
   rows = border_rows(front);
-  F* below = right + front.panels * kPanel;
-  int i = 0;
-  for (; i + kPairs * L <= front.length; i += kPairs * L, rows.at += kPairs * L) {
-    finish_rows<P, kPairs>(front.stride, target + front.pivots + i, rows, from, l[0], z_of,
-                           below + i);
-  }
-  for (; i < front.border; i += L, rows.at += L) {
-    finish_rows<P, 1>(front.stride, target + front.pivots + i, rows, from, l[0], z_of, below + i);
-  }
+  const auto vector = [&](int i) { return rows.at + i * L; };
+  finish_all<P>(front.stride, target + front.pivots, vector, rows.stride,
+                (front.border + L - 1) / L, from, l[0], z_of, right + front.panels * kPanel);
   return accepted;
 }
 
-/// R vectors of rows below the panel's block, of which `l` has L and `z` the solution. `target`:
-/// the matrix in the panel's first column; `right`: the right-hand side.
+/// So many vectors of rows below the panel's block, of which `l` has L and `z` the solution.
+/// `target`: the matrix in the panel's first column; `right`: the right-hand side.
+template <typename F>
+template <int P, typename Vector>
+[[gnu::always_inline]] inline void WideFronts<F>::finish_all(int stride, const F* target,
+                                                             const Vector& vector, int rows_stride,
+                                                             int count, int from, const F* l,
+                                                             const F* z, F* right) {
+  int i = 0;
+  for (; i + kVectors <= count; i += kVectors) {
+    F* rows[kVectors];
+    for (int r = 0; r < kVectors; ++r) rows[r] = vector(i + r);
+    finish_rows<P, kVectors>(stride, target + i * L, rows, rows_stride, from, l, z, right + i * L);
+  }
+  for (; i < count; ++i) {
+    finish_rows<P, 1>(stride, target + i * L, {vector(i)}, rows_stride, from, l, z, right + i * L);
+  }
+}
+
 template <typename F>
 template <int P, int R>
-void WideFronts<F>::finish_rows(int stride, const F* target, Rows rows, int from, const F* l,
-                                const F* z, F* right) {
+void WideFronts<F>::finish_rows(int stride, const F* target, F* const (&rows)[R], int rows_stride,
+                                int from, const F* l, const F* z, F* right) {
   W s[P][R];
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
-#pragma GCC unroll 2
+#pragma GCC unroll 3
     for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * stride + r * L);
   }
-  take_up<P, R>(rows, scaled_.data(), from, s);
-  F* to = rows.at + from * rows.stride;
+  constexpr int kHalf = R == 1 ? P : std::min(P, kColumns);
+  take_up<0, kHalf, P, R>(rows, rows_stride, scaled_.data(), from, s);
+  if constexpr (kHalf < P) take_up<kHalf, P, P, R>(rows, rows_stride, scaled_.data(), from, s);
   W y[R];
-#pragma GCC unroll 2
+#pragma GCC unroll 3
   for (int r = 0; r < R; ++r) y[r] = load<F, L>(right + r * L);
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
 #pragma GCC unroll 8
     for (int j = 0; j < k; ++j) {
       const F l_kj = l[j * kPanel + k];
-#pragma GCC unroll 2
+#pragma GCC unroll 3
       for (int r = 0; r < R; ++r) s[k][r] -= s[j][r] * l_kj;
     }
     const F z_k = z[k];
-#pragma GCC unroll 2
+#pragma GCC unroll 3
     for (int r = 0; r < R; ++r) {
       y[r] -= s[k][r] * z_k;
-      store<F, L>(to + k * rows.stride + r * rows.next, s[k][r]);
+      store<F, L>(rows[r] + (from + k) * rows_stride, s[k][r]);
     }
   }
-#pragma GCC unroll 2
+#pragma GCC unroll 3
   for (int r = 0; r < R; ++r) store<F, L>(right + r * L, y[r]);
 }
 
