@@ -8,6 +8,7 @@ import numpy
 import pandas
 
 from analysis.core import timing
+from analysis.core.controls import CONTROL
 from analysis.core.gather import gather
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.accuracy import subjects
@@ -46,8 +47,8 @@ def runs(records, subject, known):
 
 
 def timed(records):
-    """A row for each contender of each process of timed cells ("look/SETTING", "time/SETTING", "pair/SETTING")."""
-    chosen = {record.name: record for record in timing.counted([one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
+    """A row for each contender of each process of timed cells ("look/SETTING", …)."""
+    chosen = {record.name: record for record in timing.counted([one for one in records if one.role.partition("/")[0] in (*ROLES, CONTROL, "pair")])}
     found = timing.processes(chosen.values())
     of = [chosen[one] for one in found.record]
     return found.assign(

@@ -2,14 +2,15 @@
 import pandas
 
 from analysis.accuracy import pairs, subjects
-from analysis.accuracy.points import points, runs, timed
+from analysis.accuracy.points import KEY, points, runs, timed
 from analysis.accuracy.winners import LAYERS, meeting, of_layer, winners
+from analysis.core.controls import CONTROL, repeated
 from analysis.core.files import StudyError
 from analysis.core.outcomes import pareto
 
 
 def build(records, view):
-    found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": []}
+    found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": [], "controls": []}
     for column, (kind, entry) in subjects.columns(view.settings).items():
         subject = subjects.of(kind, entry, view.settings)
         if not (mine := [record for record in records if record.column == column]):
@@ -56,4 +57,6 @@ def of_column(kind, subject, known, records, view):
         one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]
     won["variables"] = table.variables.max()
     won = won.sort_values(["fill_asked", "layer", "required"], ascending=[True, False, False], na_position="first")
-    return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}
+    again = measured[measured.role == CONTROL]
+    rows = measured[measured.role == "time"].merge(again[KEY].drop_duplicates())
+    return {"controls": pandas.DataFrame(repeated(rows, again)), "points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}

@@ -2,10 +2,12 @@
 # decided is decided falsely. Disturbance: in how many timed processes others ran, how much of its time a host took, frequencies.
 import math
 
+import pandas
 from scipy import special
 
 from analysis.core import timing
 
+CONTROL = "control"  # role of runs that are there once more, where each run has a process of its own
 FALSE = 0.01  # a run is no evidence if its share of false decisions would be found by chance so seldom
 
 
@@ -25,6 +27,13 @@ def controls_in(records):
     """`controls` of those records that have a twin."""
     twinned = [one for one in records if any(name.endswith(timing.TWIN) for name in one.cell["contenders"])]
     return controls(timing.processes(timing.counted(twinned)))
+
+
+def repeated(rows, again, column="step_us"):
+    """`controls` of runs that follow each other: `again` are some of `rows` once more, of a process the first: what slows it slows all in it."""
+    twins = again.drop_duplicates("record")
+    twins = twins.assign(implementation=[name + timing.TWIN for name in twins.implementation])
+    return [*controls(timing.apart(pandas.concat([rows, twins], ignore_index=True), column))]
 
 
 def judged(table):

@@ -89,7 +89,7 @@ def native(engines, rounds):
 
 def samples(rounds):
     """Rows as analysis/core/timing.py has them, a process a round. Who failed in one round has failed."""
-    rows = rounds.assign(implementation=rounds.key, process=rounds["round"], error=0.0)
+    rows = rounds.assign(scene=rounds.subject, implementation=rounds.key, process=rounds["round"], error=0.0)
     done = finished(rows)
     failed = rows.implementation[~rows.index.isin(done.index) & (rows.status != "dropped")]
     return timing.apart(done[~done.implementation.isin(failed)].assign(status="ok"), "time")

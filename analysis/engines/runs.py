@@ -2,6 +2,7 @@
 import math
 from pathlib import PurePath
 
+from analysis.core.controls import CONTROL
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.engines.subjects import FLOOR, subject_of
 
@@ -11,13 +12,14 @@ NATIVE = "+native"                               # of an engine that was built w
 
 
 def row(record):
-    """`name`: the engine or implementation; `time`: s of computation for a simulated second; `error`: NaN in rounds; `key`: what a run has
+    """`name`: the engine or implementation; `time`: s of computation for a simulated second; `error`: NaN where it was timed; `key`: what a run has
     in common with its repetition there."""
     subject, (status, reason) = subject_of(record.column), of_run(record)
     engine = PurePath(record.cell["program"]).name.startswith("engine_")
-    error = subject.error(record, engine) if status in FINISHED and record.role != ROUND else None
+    is_timed = record.role in (ROUND, CONTROL)
+    error = subject.error(record, engine) if status in FINISHED and not is_timed else None
     error = math.nan if error is None else max(error, FLOOR)
-    if status in FINISHED and record.role != ROUND and not error <= subject.worst:  # as the programs judge the four-bar
+    if status in FINISHED and not is_timed and not error <= subject.worst:  # as the programs judge the four-bar
         status, reason = "diverged", f"position error {error:.2e} m (allowed {subject.worst:.1g})"
     found, side = (_engine if engine else _ours)(record), ENGINE if engine else OURS
     return found | {"subject": subject.name, "status": status, "reason": reason, "error": error, "round": record.cell["number"], "side": side,

@@ -1,6 +1,7 @@
 # Curves of theirs and ours, the common rounds, and what follows at equal error, from the records.
 import pandas
 
+from analysis.core.controls import CONTROL, repeated
 from analysis.engines import equal_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import subject_of
@@ -9,10 +10,11 @@ COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "rea
 
 
 def build(records, view):
-    engines, ours, rounds = (_sorted(frame([row(one) for one in records if one.role == role])) for role in (ENGINE, OURS, ROUND))
+    engines, ours, rounds, again = (_sorted(frame([row(one) for one in records if one.role == role])) for role in (ENGINE, OURS, ROUND, CONTROL))
     return {"engines": engines.drop(columns=["side", "round", "key"]).rename(columns={"name": "engine"}),
             "ours": ours.drop(columns=["side", "round", "over", "key"]).rename(columns={"name": "implementation", "value": "step"}),
             "rounds": rounds[list(COLUMNS)].drop(columns=["error", "key"]), "native": equal_error.native(engines, rounds),
+            "controls": repeated(*map(equal_error.samples, (rounds, again)), "time"),
             "equal_error": equal_error.table(engines, ours, rounds, view.registry.own)}
 
 

@@ -3,6 +3,7 @@ from collections import namedtuple
 
 import pandas
 
+from analysis.core.controls import CONTROL, repeated
 from analysis.core.outcomes import FINISHED, of_run
 from analysis.core.text import number
 
@@ -24,8 +25,10 @@ def build(records, view):
     machine = [{"after": after, "step": float(f"{1e-6 * one.option('deadline-us'):g}"), "seconds": one.option("seconds"),
                 "status": one.status, "reason": one.reason, "record": one.name} | {
                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
-    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
-            "judging": pandas.DataFrame(_judging([one for one in records if one.role == "judging"])), "tried": found["search"],
+    judging, again = (_runs([one for one in records if one.role == role]) for role in ("judging", CONTROL))
+    ended = [one[one.status.isin(FINISHED)].assign(status="ok") for one in (judging, again)]
+    return {"controls": repeated(*ended, "mean_us"), "steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
+            "judging": pandas.DataFrame(_judging(judging)), "tried": found["search"],
             "largest": pandas.DataFrame(_largest(found["search"]))}
 
 
@@ -41,13 +44,16 @@ def _run(record, null):
     return row | {"null_missed": None if null is None else lost(null), "kept": verdict.kept, "reason_not": verdict.reason}
 
 
-def _judging(records):
+def _runs(records):
+    known = ("scene", "implementation", "process", "status", "reason", "variables", "mean_us", "judge_us", "record")
+    return pandas.DataFrame([dict(zip(known, (
+        one.cell["scene"], one.cell["contenders"][0], one.cell["number"], *of_run(one), one.output.get("variables"),
+        (one.output.get("step_us") or {}).get("mean"), one.output.get("judge_us"), one.name))) for one in records], columns=known)
+
+
+def _judging(runs):
     """A row a scene, of the implementation whose steps are fastest there: the middle one of its runs."""
-    runs = pandas.DataFrame([{
-        "scene": one.cell["scene"], "implementation": one.cell["contenders"][0], "status": of_run(one)[0], "reason": of_run(one)[1],
-        "variables": one.output.get("variables"), "mean_us": (one.output.get("step_us") or {}).get("mean"),
-        "judge_us": one.output.get("judge_us"), "record": one.name} for one in records])
-    for scene, tried in runs.groupby("scene", sort=False) if len(runs) else ():
+    for scene, tried in runs.drop(columns="process").groupby("scene", sort=False):
         whole = tried[tried.status.isin(FINISHED)]
         if whole.empty:
             yield tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None}

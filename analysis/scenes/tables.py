@@ -4,10 +4,11 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import grouped
+from analysis.core.controls import repeated
 from analysis.core.files import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from study.scenes import metric
-from study.scenes.modelling import CASES
+from study.scenes.modelling import AGAIN, CASES, PLAIN
 from study.scenes.problems import read_list
 from study.scenes.references import EXTRAPOLATED, PUBLISHED, four_bar, kind, solution
 
@@ -30,7 +31,9 @@ def build(records, view):
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
-    found["modelling"] = list(modelling_rows(records))
+    by_role = grouped(records)
+    found["modelling"] = list(modelling_rows(by_role))
+    found["controls"] = repeated(*(timing.processes(by_role.get(f"time.{case}", [])) for case in (PLAIN, AGAIN.file_name)))
     order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
@@ -94,10 +97,9 @@ def convergence_rows(problem, runs):
                 "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name}
 
 
-def modelling_rows(records):
+def modelling_rows(by_role):
     """One row for each implementation, size and case: error of the whole run, time of a step, and its ratio to the
     case that it is compared with, round by round."""
-    by_role = grouped(records)
     loops_of = lambda scene: int(scene.rpartition("/")[2].partition("-")[0])  # which study/scenes/modelling.py wrote
     motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}

@@ -1,4 +1,5 @@
 # Verdicts, tables, figures and sentences of real time on synthetic records.
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
@@ -138,6 +139,16 @@ def test_judging_is_held_to_its_bound_beside_the_fastest():
     [answer] = page.answers(found, VIEW)
     assert "not held on large (3 %)." in answer["text"] and answer["anchor"] == "judging"
     assert ": held; nearest to it: small, 3 %." in page.answers(made(*runs[:4]), VIEW)[0]["text"]
+
+
+@pytest.mark.parametrize("slower", [1.0, 1.2])
+def test_runs_that_are_there_once_more_are_controls(slower):
+    runs = [judged("small", 6, 0.1, mean=mean, number=place) for place, mean in enumerate((9.0, 10.0, 11.0))]
+    again = [replace(one, name=f"again-{one.name}", cell=one.cell | {"role": "control"}, output=one.output | {
+        "step_us": {"mean": slower * one.output["step_us"]["mean"]}}) for one in runs]
+    found = made(*runs, *again)
+    [row] = found["controls"].to_dict("records")
+    assert (row["scene"], row["ratio"], row["decided"]) == ("small", pytest.approx(slower), slower > 1) and len(found["judging"]) == 1
 
 
 def test_without_records_all_says_so():

@@ -1,4 +1,5 @@
 # Tables and sentences of the standard problems and of modelling on synthetic records.
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
@@ -114,6 +115,17 @@ def test_cases_are_compared_round_by_round():
     assert rows.ratio["one/a", "springs"] == pytest.approx(3) == rows.ratio_high["one/a", "springs"]  # though rounds differ twofold
     assert rows.ratio["two/b", "springs"] == pytest.approx(1) and rows.rounds["two/b", "springs"] == 2
     assert rows.position_error["one/a", "plain"] == pytest.approx(1e-3)
+
+
+def test_a_case_that_was_timed_twice_is_a_control_and_no_case():
+    plain = [modelled("plain", number, factor, 5.0)[-1] for number, factor in enumerate((2.0, 3.0, 4.0))]
+    for slower in (1.0, 1.1):
+        twins = [modelled("plain", number, slower * factor, 5.0)[-1] for number, factor in enumerate((2.0, 3.0, 4.0))]
+        again = [replace(one, name=f"again-{one.name}", cell=one.cell | {"role": "time.plain+twin"}) for one in twins]
+        found = made(*modelled("plain", 9, 2.0), *plain, *again)
+        [row] = found["controls"].to_dict("records")  # of a process the first
+        assert (row["implementation"], row["ratio"], row["decided"]) == ("one/a", pytest.approx(slower), slower > 1)
+        assert "plain+twin" not in {*found["modelling"].case}
 
 
 def test_a_motion_that_is_lost_has_a_time_and_no_error():

@@ -3,6 +3,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from analysis.accuracy import points, subjects
+from analysis.core.controls import CONTROL
 from analysis.core.files import StudyError
 from analysis.core.registry import ANCHOR
 from study.core import timing
@@ -12,7 +13,7 @@ from study.core.setting import read_settings
 VALUES = 5e4      # steps of a stretch times variables, at most
 OPERATIONS = 2e8  # and times the square of a filled row: a dense step takes longer
 LEAST = 10        # steps of a stretch
-SAMPLES = {"look": 3, "time": 6, "pair": 3}  # of a process and contender
+SAMPLES = {"look": 3, "time": 6, CONTROL: 6, "pair": 3}  # of a process and contender
 LOOK = 4          # share of the stretch in a look
 PATIENCE = (0.5, 20)  # s: whose first stretch takes longer is not looked at; the longer where nobody is left
 CAREFUL = 3  # times the time of a run, and of starting it, is its limit: predictions may be wrong
@@ -71,7 +72,7 @@ class Runs:
         return []
 
     def time(self, role, scene, name, step, contenders, processes=1, dense=False, more=()):
-        """Timed processes in which the contenders of a point take turns; role: "look", which is short, "time" or "pair"."""
+        """Timed processes in which the contenders of a point take turns; role: "look", which is short, "time", CONTROL or "pair"."""
         steps = self.stretch(scene, step, dense)
         steps = max(LEAST, steps // LOOK) if role == "look" else steps
         words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, "--steps", steps, *more)

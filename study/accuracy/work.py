@@ -12,6 +12,7 @@ from analysis.accuracy import subjects
 from analysis.accuracy.pairs import STEP
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import NEAR, meeting, winners
+from analysis.core.controls import CONTROL
 from analysis.core.gather import gather
 from analysis.core.outcomes import FINISHED, pareto
 from study.accuracy.runs import Runs
@@ -144,10 +145,14 @@ def _rounds(runs, scene, processes, open_only=False):
     points = gather(((row.setting, row.step), row.implementation) for error in errors for group in runs.layers.values()
                     for row in near(table[table.implementation.isin([one.name for one in group])], error).itertuples())
     chosen = runs.chosen.setdefault(scene, {})
-    for (name, step), contenders in points.items():
-        # The same contenders in all processes, in the order of the registry.
-        group = chosen.setdefault((name, step), [one for one in runs.names.values() if one.name in contenders])
-        runs.time("time", scene, name, step, group, processes)
+    for point, contenders in points.items():  # the same contenders in all processes, in the order of the registry
+        chosen.setdefault(point, [one for one in runs.names.values() if one.name in contenders])
+    rounds = [("time", *point) for point in points]
+    if scene == runs.subject.scene and runs.subject.loops and not open_only:
+        rounds += [(CONTROL, *point) for point in [*points][:1]]
+    for number in range(1, processes + 1):  # what drifts falls on all points alike
+        for role, *point in rounds:
+            runs.time(role, scene, *point, chosen[tuple(point)], number)
 
 
 def near(table, error):

@@ -6,6 +6,7 @@ import random
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from analysis.core.controls import CONTROL
 from analysis.core.files import ROOT, StudyError, read_yaml
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
@@ -138,6 +139,7 @@ class Bench:
         often = [(one["cell"], ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ())
                  for one in [*theirs.to_dict("records"), *mine.to_dict("records")]]
         cells = [replace(cell, settings=(*cell.settings, *more), role=ROUND, timed=True, keep=(), every=0) for cell, more in often]
+        cells += [replace(cell, role=CONTROL) for cell in (*cells[:1], *cells[len(theirs):][:1])]  # of each side one is there twice
         for number in range(1, self.lab.settings["rounds"] + 1):
             order = random.Random(f"{SEED}:{self.subject.name}:{number}").sample(cells, len(cells))
             self.lab.tell(f"round {number} of {self.lab.settings['rounds']}")

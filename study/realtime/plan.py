@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cache
 
+from analysis.core.controls import CONTROL
 from analysis.realtime.tables import judge, needs_null
 from study.core.cell import Cell, Contender
 from study.core.profile import by_share
@@ -18,6 +19,7 @@ JUDGED = ("harness/scenes/double_pendulum.json", "harness/scenes/four_bar_2.json
           "harness/scenes/problems/half_car.json", "four-bar:10", "scissors:5", "loop:12", "ladder:12", "harness/scenes/problems/a04_bricard.json",
           "vehicle:4", "four-bar:40", "scissors:20", "robot:10", "grid:5x5", "bodies:10")  # scenes, from small to large
 JUDGED_STEP, JUDGED_STEPS, JUDGED_RUNS = 1e-3, 16000, 5
+TWICE = ("harness/scenes/four_bar_2.json", "four-bar:10")  # of these: run once more, as a control
 FASTEST = ("compiled_chains/sweeps", "compiled_ldl/fronts")  # what judging costs most beside
 NULL = "../study/realtime/null_process"  # as seen from the build
 
@@ -53,8 +55,9 @@ def judging(lab):
     """The fastest that take part: beside their steps judging costs most."""
     fastest = [one for one in map(lab.contender, (*FASTEST, *lab.settings["implementations"])) if one][:len(FASTEST)]
     words = ("--step", f"{JUDGED_STEP:g}", "--duration", f"{JUDGED_STEPS * JUDGED_STEP:g}")
-    lab.run([Cell("simulate", scene, (one,), words, "judging", number, timed=True, seconds=PATIENCE * JUDGED_STEPS * JUDGED_STEP + SET_UP)
-             for number in range(1, JUDGED_RUNS + 1) for scene in JUDGED for one in fastest], drop=True)
+    runs = [("judging", scene, one) for scene in JUDGED for one in fastest] + [(CONTROL, scene, one) for scene in TWICE for one in fastest[:1]]
+    lab.run([Cell("simulate", scene, (one,), words, role, number, timed=True, seconds=PATIENCE * JUDGED_STEPS * JUDGED_STEP + SET_UP)
+             for number in range(1, JUDGED_RUNS + 1) for role, scene, one in runs], drop=True)
 
 
 def null(lab, step, seconds, name):

@@ -6,6 +6,7 @@
 import random
 from dataclasses import dataclass, replace
 
+from analysis.core.registry import TWIN
 from study.core.cell import Cell, by_environment
 from study.scenes import metric
 
@@ -43,6 +44,7 @@ CASES = (
     Case(BEFORE, "early", steps=EARLY, base=BEFORE),
     Case("velocities only, before singular", "early", options=("--projections", "velocity"), steps=EARLY, base=BEFORE),
     Case("no projections, before singular", "early", options=("--projections", "none"), steps=EARLY, base=BEFORE))
+AGAIN = Case(PLAIN + TWIN, "")  # a control: timed only
 
 
 def scenes(loops):
@@ -84,11 +86,11 @@ def run(lab):
     motions, timed = [], []
     for loops in lab.settings["loops"]:
         paths = {name: lab.scene(f"{loops}-{slug(name)}", scene) for name, scene in scenes(loops).items()}
-        for case in CASES:
+        for case in (*CASES, AGAIN):
             duration = DURATION if case.steps == STRETCH else EARLY * STEP
             motions += [Cell("simulate", paths[case.scene], (one,), ("--step", f"{STEP:g}", "--duration", f"{duration:g}", *case.options),
                              f"motion.{case.file_name}", seconds=120, keep=("outputs",), every=round(duration / STEP) // metric.SAMPLES)
-                        for one in those]
+                        for one in those if case != AGAIN]
             words = ("--step", f"{STEP:g}", "--steps", case.steps, *case.options, f"--benchmark_repetitions={lab.settings['samples']}")
             timed += [Cell("bench", paths[case.scene], group, words, f"time.{case.file_name}", timed=True, seconds=60) for group in groups.values()]
     lab.run(motions)

@@ -69,6 +69,17 @@ def test_who_is_ranked_has_met_the_error_in_a_run_of_its_own():
     assert (best["implementation"], best["step"]) == ("lib_b/even", 1.25e-3)  # the point of the first look
 
 
+def test_the_first_point_is_timed_twice_in_turn_with_the_others(whole):
+    lab, found = whole
+    point = lambda cell: (cell.role.partition("/")[2], cell.scene, options(cell)["--step"], cell.contenders)
+    timed = [cell for cell in lab.asked if cell.role.partition("/")[0] in ("time", "control")]
+    again = [cell for cell in timed if cell.role.startswith("control/")]
+    assert [cell.number for cell in again] == [1, 2, 3] and {*map(point, again)} == {point(timed[0])}
+    assert [cell.number for cell in timed[:timed.index(again[-1])]] == sorted(cell.number for cell in timed[:timed.index(again[-1])])
+    [row] = found["controls"].to_dict("records")
+    assert (row["implementation"], row["ratio"], row["decided"]) == (again[0].contenders[0].name, 1.0, False)
+
+
 def test_a_resumed_plan_asks_for_nothing_new(whole):
     lab, _ = whole
     again = Lab("four-bar-10")

@@ -88,6 +88,10 @@ def test_curves_of_theirs_and_ours_then_common_rounds_in_new_orders(fakes):
     assert {frozenset(one) for one in orders} == {frozenset(orders[0])} and len(set(orders)) > 1
     assert {cell.program for cell in rounds} == {"mbs", "study/engines/engine_able"}
     assert all(cell.settings[-2:] == ("--repeats", plan.REPEATS) for cell in rounds)  # all are short here
+    twice = lab.of("control")  # one of each side
+    assert sorted((cell.program, cell.number) for cell in twice) == sorted((name, number) for name in ("mbs", "study/engines/engine_able")
+                                                                           for number in (1, 2, 3))
+    assert {(cell.program, cell.settings) for cell in twice} < {*orders[0]}
     again = Lab()
     plan.run(again, "four-bar-2")
     assert again.asked == lab.asked  # a study that is resumed comes to the same point

@@ -212,10 +212,11 @@ def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
     with pytest.raises(StudyError, match="6 of 26 A/A controls were decided, more than chance allows"):
         need_alike(sets[0], sets[0])
     sound = pandas.DataFrame({"ratio": 1.0, "decided": [False] * 100})  # which hide in all what fails alone
-    monkeypatch.setattr(machine, "table", lambda folder, part, name: twins if part == "map" else sound)
-    assert machine.controls(sets[0])["sound"]
-    with pytest.raises(StudyError, match="6 of 26 A/A controls were decided"):
-        need_alike(sets[0], sets[0])
+    for failed in ("map", "engines"):
+        monkeypatch.setattr(machine, "table", lambda folder, part, name: twins if part == failed else sound)
+        assert machine.controls(sets[0])["sound"]
+        with pytest.raises(StudyError, match=f"6 of 26 A/A controls were decided, more than chance allows .{failed}"):
+            need_alike(sets[0], sets[0])
 
 
 def test_a_set_without_controls_is_refused(tmp_path):

@@ -16,6 +16,7 @@ from analysis.core.style import Look
 from analysis.map import figures as maps
 from study.tests.conftest import study
 from study.tools import fragments, store
+from study.tools.merge import machine
 from study.tools.paper import artifact, audit, claims as claims_, figures, known as known_sets, main, tables
 from study.tools.paper.claims import _mixed, claims
 from study.tools.paper.known import Known
@@ -83,7 +84,7 @@ def test_the_appendix_has_the_first_record_of_each_number_and_a_table_has_all():
 
 
 def test_controls_are_those_by_which_the_set_is_judged(known, found):
-    tables = [known.tables(part)["controls"] for part in ("map", "families")]
+    tables = [known.tables(part)["controls"] for part in machine.CONTROLLED]
     assert f"{sum(map(len, tables))} times a contender" in found["design.controls"].text
     assert f"{sum(table.decided.sum() for table in tables)} were falsely decided" in found["design.controls"].text
 

@@ -1,10 +1,13 @@
 # The search for the largest size in real time, and the null process.
 import json
 import subprocess
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
-from study.realtime.plan import GRID, search
+from study.core.cell import Contender
+from study.realtime.plan import GRID, JUDGED_RUNS, TWICE, judging, search
 from study.tests.conftest import ROOT
 
 
@@ -45,6 +48,16 @@ def test_the_search_gives_up_without_budget(at):
     answers = iter(["kept"] * (at - 1) + [None])
     answer, asked = found(lambda place: next(answers))
     assert answer is None and len(asked) == at
+
+
+def test_judging_has_a_control_in_each_of_its_rounds():
+    lab = SimpleNamespace(contender=lambda name: Contender(name, name), settings={"implementations": []}, cells=[])
+    lab.run = lambda cells, drop: lab.cells.extend(cells)
+    judging(lab)
+    twice = [cell for cell in lab.cells if cell.role == "control"]
+    assert sorted((cell.scene, cell.number) for cell in twice) == sorted((scene, number) for scene in TWICE for number in range(1, JUDGED_RUNS + 1))
+    assert all(replace(cell, role="judging") in lab.cells for cell in twice)
+    assert [cell.number for cell in lab.cells] == sorted(cell.number for cell in lab.cells)
 
 
 def test_the_null_process_counts_gaps():

@@ -7,6 +7,7 @@ from analysis.core import records, schema
 from analysis.core.controls import judged
 from analysis.core.files import read_object
 from analysis.core.registry import ANCHOR
+from analysis.core.view import parts
 from analysis.families import rule
 from analysis.map import carry
 from analysis.map.results import with_samples
@@ -16,7 +17,8 @@ RATES = {"vector_bytes": "widest vectors of the build, bytes", "flops_per_ns": "
          "add_ns": "latency of an addition, ns", "fused_ns": "latency of a multiply-add, ns", "divide_ns": "latency of a division, ns",
          "L1": "loads and stores in L1, bytes a ns", "L2": "in L2", "L3": "in L3", "memory": "in memory"}
 
-PARTS = ("map", "families")  # that are merged, and have controls
+PARTS = ("map", "families")  # that are merged
+CONTROLLED = [part for part in parts() if "controls" in schema.of_part(part)]
 
 
 def origins(studyset):
@@ -40,8 +42,8 @@ def rates(studyset):
 
 
 def controls(studyset):
-    """`judged` of a set's controls, on the map and on mechanisms."""
-    return judged(pandas.concat(table(studyset.folder, part, "controls") for part in PARTS))
+    """`judged` of all of a set's controls."""
+    return judged(pandas.concat(table(studyset.folder, part, "controls") for part in CONTROLLED))
 
 
 def of_seeds(studyset):
@@ -51,11 +53,12 @@ def of_seeds(studyset):
 
 
 def no_evidence(studyset):
-    """Why a set says nothing: its node's controls failed, or those of the map, of mechanisms or of both, or it has none; "" if it may."""
-    tables = [table(studyset.folder, part, "controls") for part in PARTS]
-    failed = [f"{one['false']} of {one['pairs']} A/A controls were decided, more than chance allows"
-              for one in map(judged, (pandas.concat(tables), *tables)) if one["pairs"] and not one["sound"]]
-    if not any(map(len, tables)) and {*PARTS} & {*studyset.facts["parts"]}:
+    """Why a set says nothing: its node's controls failed, or those of a part or of all, or its merged parts have none; "" if it may."""
+    tables = {part: table(studyset.folder, part, "controls") for part in CONTROLLED}
+    failed = [f"{one['false']} of {one['pairs']} A/A controls were decided, more than chance allows ({part})"
+              for part, one in (("all parts", controls(studyset)), *((part, judged(one)) for part, one in tables.items()))
+              if one["pairs"] and not one["sound"]]
+    if not any(len(tables[part]) for part in PARTS) and {*PARTS} & {*studyset.facts["parts"]}:
         failed = ["it has no A/A controls"]
     return studyset.facts.get("no_evidence") or next(iter(failed), "")
 

@@ -113,8 +113,8 @@ def _design(known):
             "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
             "slower": count(timed[timed.low > 1], timed, table), "faster": count(timed[timed.high < 1], timed, table),
             "least": of_rows(lambda rows: number(rows.ratio.iloc[0]), table, timed.nsmallest(1, "ratio")),
-            "controls": Number(_controls(known), "map/controls, families/controls", tuple(
-                name for part in ("map", "families") for name in _records(known.tables(part)["controls"]))),
+            "controls": Number(_controls(known), ", ".join(f"{part}/controls" for part in machine.CONTROLLED), tuple(
+                name for part in machine.CONTROLLED for name in _records(known.tables(part)["controls"]))),
             "spread": Number(_spread(known), "map/spread", _records(known.tables("map")["spread"]))}
 
 
