@@ -14,6 +14,15 @@ namespace {
 constexpr Distribution kUniform{Distribution::Kind::uniform, 2.0, 4.0};
 constexpr Distribution kNormal{Distribution::Kind::normal, -1.0, 0.5};
 
+std::vector<std::vector<double>> draw(const std::vector<Distribution>& distributions,
+                                      const Sampling& sampling) {
+  auto values = draw_shares(distributions.size(), sampling);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (double& value : values[i]) value = value_at(distributions[i], value);
+  }
+  return values;
+}
+
 struct Moments {
   double mean = 0.0, deviation = 0.0;
 };

@@ -11,16 +11,6 @@
 #include "sweep/value_range.hpp"
 
 namespace mbs {
-namespace {
-
-double value_of(const Distribution& distribution, double share) {
-  if (distribution.kind == Distribution::Kind::uniform) {
-    return distribution.first + (distribution.second - distribution.first) * share;
-  }
-  return boost::math::quantile(boost::math::normal(distribution.first, distribution.second), share);
-}
-
-}  // namespace
 
 double random_share(std::uint64_t bits) {  // the half must not be rounded: 52 bits
   return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
@@ -40,21 +30,28 @@ std::optional<Distribution> parse_distribution(const std::string& text, const st
                       second};
 }
 
-std::vector<std::vector<double>> draw(const std::vector<Distribution>& distributions,
-                                      const Sampling& sampling) {
-  std::vector<std::vector<double>> values(distributions.size());
+double value_at(const Distribution& distribution, double share) {
+  if (distribution.kind == Distribution::Kind::uniform) {
+    return distribution.first + (distribution.second - distribution.first) * share;
+  }
+  return boost::math::quantile(boost::math::normal(distribution.first, distribution.second), share);
+}
+
+std::vector<std::vector<double>> draw_shares(std::size_t numbers, const Sampling& sampling) {
+  const auto count = static_cast<std::size_t>(sampling.count);
+  std::vector<std::vector<double>> shares(numbers, std::vector<double>(count));
   std::mt19937_64 random(sampling.seed);
-  boost::random::sobol sobol(std::max<std::size_t>(distributions.size(), 1));
-  std::vector<std::uint64_t> shifts(distributions.size());
+  boost::random::sobol sobol(std::max<std::size_t>(numbers, 1));
+  std::vector<std::uint64_t> shifts(numbers);
   for (auto& shift : shifts) shift = sampling.sobol ? random() : 0;
-  for (long i = 0; i < sampling.count; ++i) {
-    for (std::size_t k = 0; k < distributions.size(); ++k) {
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < numbers; ++k) {
       // Boost's sequence leaves its first point, 0, out, without which 2^k points are not even.
       const std::uint64_t bits = !sampling.sobol ? random() : (i == 0 ? 0 : sobol()) ^ shifts[k];
-      values[k].push_back(value_of(distributions[k], random_share(bits)));
+      shares[k][i] = random_share(bits);
     }
   }
-  return values;
+  return shares;
 }
 
 }  // namespace mbs

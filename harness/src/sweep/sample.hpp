@@ -26,11 +26,13 @@ double random_share(std::uint64_t bits);
 /// Throws UsageError.
 std::optional<Distribution> parse_distribution(const std::string& text, const std::string& path);
 
-/// `count` values of each distribution; those of one index belong together. 2^k of a Sobol sequence
-/// are a net: of 2^k even intervals of a distribution, each has one [Owen, 2020].
+/// The value below which so large a share of a distribution lies.
+double value_at(const Distribution& distribution, double share);
+
+/// `count` shares for each of so many numbers; those of one index belong together. 2^k of a Sobol
+/// sequence are a net: of 2^k even intervals of a number, each has one [Owen, 2020].
 ///
 /// [Owen, 2020] A. B. Owen, On dropping the first Sobol' point, arXiv:2008.08051.
-std::vector<std::vector<double>> draw(const std::vector<Distribution>& distributions,
-                                      const Sampling& sampling);
+std::vector<std::vector<double>> draw_shares(std::size_t numbers, const Sampling& sampling);
 
 }  // namespace mbs

@@ -64,27 +64,24 @@ void SweepGrid::require_effect() const {
 
 void SweepGrid::multiply_lanes(long count, const std::string& option) {
   if (count > kMostLanes / lanes_) {
-    throw UsageError(fmt::format("{}: found more than {} lanes, allowed are that many", option,
-                                 kMostLanes));
+    throw UsageError(
+        fmt::format("{}: found more than {} lanes, allowed are that many", option, kMostLanes));
   }
   lanes_ *= count;
 }
 
 void SweepGrid::add_samples(const Sampling& sampling) {
-  std::vector<Distribution> distributions;
-  for (const SweepAxis& axis : axes_) {
-    if (axis.distribution) distributions.push_back(*axis.distribution);
+  const auto is_sampled = [](const SweepAxis& axis) { return axis.distribution.has_value(); };
+  const auto sampled = static_cast<std::size_t>(std::ranges::count_if(axes_, is_sampled));
+  if ((sampled == 0) != (sampling.count == 0)) {
+    throw UsageError(sampled == 0 ? "--sample: found no number to sample, allowed with --vary "
+                                    "PATH=uniform:a:b or PATH=normal:mean:deviation"
+                                  : "--vary: found a distribution, allowed with --sample N");
   }
-  if (distributions.empty() != (sampling.count == 0)) {
-    throw UsageError(distributions.empty()
-                         ? "--sample: found no number to sample, allowed with --vary "
-                           "PATH=uniform:a:b or PATH=normal:mean:deviation"
-                         : "--vary: found a distribution, allowed with --sample N");
-  }
-  if (distributions.empty()) return;
+  if (sampled == 0) return;
   multiply_lanes(samples_ = sampling.count, "--sample");
-  auto values = draw(distributions, sampling);
-  auto next = values.begin();
+  auto shares = draw_shares(sampled, sampling);
+  auto next = shares.begin();
   for (SweepAxis& axis : axes_) {
     if (axis.distribution) axis.values = std::move(*next++);
   }
@@ -96,7 +93,7 @@ std::vector<double> SweepGrid::values(long lane) const {
   lane /= samples_;
   for (std::size_t i = axes_.size(); i-- > 0;) {
     if (axes_[i].distribution) {
-      result[i] = axes_[i].values[sample];
+      result[i] = value_at(*axes_[i].distribution, axes_[i].values[sample]);
       continue;
     }
     const auto count = static_cast<long>(axes_[i].values.size());

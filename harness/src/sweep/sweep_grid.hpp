@@ -14,7 +14,8 @@ namespace mbs {
 struct SweepAxis {
   std::string path;  ///< as typed
   nlohmann::json::json_pointer number;
-  std::vector<double> values;  ///< of a sampled one: one a sample
+  std::vector<double> values;  ///< of a sampled one: its share of each sample. All lanes' values
+                               ///< at once would take longer than a small part of a sweep
   std::optional<Distribution> distribution = std::nullopt;
 };
 
