@@ -73,7 +73,8 @@ def fastest(found, samples):
         names = {one: by_label[one]["implementation"] for one in ranking.ratios}
         waiting = any(point["time"] <= NEAR * first["time"] and point["implementation"] not in in_rounds for point in found)
         row |= {"decided": ranking.decided and not waiting, "settled": ranking.settled and not waiting,
-                "equivalent": "; ".join(names[one] for one in ranking.equivalent if one != ranking.winner)}
+                "equivalent": "; ".join(names[one] for one in ranking.equivalent if one != ranking.winner),
+                "inside": "; ".join(names[one] for one in ranking.inside if one != ranking.winner)}
         if ranking.second:
             row |= {"second": by_label[ranking.second]["implementation"], "margin": ranking.margin.value}
     return row

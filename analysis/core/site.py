@@ -24,14 +24,7 @@ def write_part(folder, part):
     overwrite that one's page by one to come."""
     view = View(folder, part)
     tables, found = write_tables(view)
-    drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
-    about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {part}, profile {view.facts['profile']}"
-    figures = {}  # {name: its file in base 64}
-    for name, figure in drawn.items():
-        path = folder / part / "figures" / f"{name}.svg"
-        save(figure, path, about)
-        figures[name] = base64.b64encode(path.read_bytes()).decode()
-    plt.close("all")
+    figures = draw(tables, view, folder / part / "figures")
     page, others = _module(part, "page"), told(disturbance(found))
     known, answers = page.context(tables, view), page.answers(tables, view)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
@@ -41,6 +34,16 @@ def write_part(folder, part):
         "answers": answers, "cases": page.cases(tables, view) if hasattr(page, "cases") else [], "disturbance": others})
     for name, known in (page.files(tables, view) if hasattr(page, "files") else {}).items():
         write_json(folder / part / name, known)
+
+
+def draw(tables, view, into, **more):
+    """{name: its file in base 64} of a part's figures, which are written into a folder. `more`: what several sets say together."""
+    drawn = _module(view.part, "figures").draw(tables, view, **more) if (ROOT / "analysis" / view.part / "figures.py").exists() else {}
+    about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
+    for name, figure in drawn.items():
+        save(figure, into / f"{name}.svg", about)
+    plt.close("all")
+    return {name: base64.b64encode((into / f"{name}.svg").read_bytes()).decode() for name in drawn}
 
 
 def write_tables(view):

@@ -209,6 +209,32 @@ class Ranking(namedtuple("Ranking", "winner ratios untimed", defaults=((),))):
     # Those of whom neither is shown: not that they are slower, not that they are as fast.
     open = property(lambda self: tuple(name for name, one in self.ratios.items() if name != self.winner and one.low <= 1 and one.high > EQUIVALENT))
     settled = property(lambda self: not self.open)  # whether it is said of each whether it is as fast as the winner
+    # The equivalence set: the winner and all that are not shown to take more than EQUIVALENT times its time.
+    inside = property(lambda self: tuple(name for name, chance in outside([self])[0].items() if chance > 1 - CONFIDENCE))
+
+
+def error(ratio):
+    """Standard error of a ratio's logarithm."""
+    return math.log(ratio.high / ratio.low) / 2 / float(special.stdtrit(ratio.freedom, (1 + CONFIDENCE) / 2)) if ratio.high > ratio.low else 0.0
+
+
+def behind(ratio, variance):
+    """The chance to find it so far over EQUIVALENT, or farther, where it is not over it (Student's, one-sided). `variance`: beyond its interval,
+    of its logarithm; that the intervals' degrees of freedom stay makes the chance larger."""
+    if not (0 < ratio.low <= ratio.high < math.inf and ratio.value > EQUIVALENT):
+        return 1.0
+    own = math.hypot(error(ratio), math.sqrt(variance)) or 1e-9
+    return float(special.stdtr(ratio.freedom, math.log(EQUIVALENT / ratio.value) / own))
+
+
+def outside(rankings, variance=0.0):
+    """Of each Ranking {contender: `behind`, where all that these say of a scene is asked at once [Holm]}. Twice, as nobody knows before who leads."""
+    found, least = [dict.fromkeys(one.ratios, 1.0) for one in rankings], 0.0
+    asked = sorted((behind(one, variance), place, name) for place, ranking in enumerate(rankings)
+                   for name, one in ranking.ratios.items() if name != ranking.winner)
+    for left, (chance, place, name) in zip(range(len(asked), 0, -1), asked):
+        found[place][name] = least = max(least, 2 * left * chance)
+    return found
 
 
 def by_time(winner, ratios):

@@ -4,6 +4,7 @@ from functools import cache, cached_property
 from pathlib import Path
 
 from analysis.core.files import ANY, ROOT, damaged, from_yaml, need_kind, read_json, read_object, read_yaml
+from analysis.core.gather import gather
 from analysis.core.registry import Registry
 
 LIST = ROOT / "study" / "parts.yaml"
@@ -38,6 +39,16 @@ def facts_of(folder):
     if unknown := [part for part in found["parts"] if part not in [*parts()]]:
         raise damaged(folder / "set.json", f"parts: {unknown[0]!r} is none of {', '.join(parts())}")
     return found
+
+
+def others(folder):
+    """Of each other processor a stored set beside this one, of the same commit where there is one."""
+    mine = facts_of(folder)["context"]
+    contexts = {path.parent: facts_of(path.parent)["context"] for path in sorted(folder.parent.glob("*/set.json"))
+                if any((path.parent / "raw").glob("*.tar.xz"))}
+    found = gather((contexts[one].get("cpu_model"), one)
+                   for one in sorted(contexts, key=lambda one: contexts[one].get("commit") != mine.get("commit")))
+    return [first for model, (first, *_) in found.items() if model not in (None, "", mine.get("cpu_model"))]
 
 
 def context_in(path):

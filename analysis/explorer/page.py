@@ -8,7 +8,7 @@ from analysis.core import timing
 from analysis.core.gather import gather
 from analysis.core.registry import ANCHOR
 from analysis.core.style import Look
-from analysis.core.view import Folder, facts_of
+from analysis.core.view import Folder, others
 from analysis.explorer import data
 from study.core.setting import read_settings
 
@@ -29,16 +29,6 @@ def context(folder):
              "quantiles": special.stdtrit(range(1, MOST), (1 + timing.CONFIDENCE) / 2).tolist()}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return {"data": text.replace("<", "\\u003c"), "examples": [*examples(contests, registries[0])]}
-
-
-def others(folder):
-    """Of each other processor a stored set beside this one, of the same commit where there is one."""
-    mine = facts_of(folder)["context"]
-    contexts = {path.parent: facts_of(path.parent)["context"] for path in sorted(folder.parent.glob("*/set.json"))
-                if any((path.parent / "raw").glob("*.tar.xz"))}
-    found = gather((contexts[one].get("cpu_model"), one)
-                   for one in sorted(contexts, key=lambda one: contexts[one].get("commit") != mine.get("commit")))
-    return [first for model, (first, *_) in found.items() if model not in (None, "", mine.get("cpu_model"))]
 
 
 def _about(name, registries):

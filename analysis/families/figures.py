@@ -16,8 +16,8 @@ FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 
 FILLS = ("full", "none", "left")  # of marks of code of our own, who is the fastest most often first
 
 
-def draw(tables, view):
-    return {"map": real_map(tables, Look(view.registry), view.registry), "held": held_figure(tables["held"])}
+def draw(tables, view, agreed={}):
+    return {"map": real_map(tables, Look(view.registry), view.registry, agreed.get("libraries", {})), "held": held_figure(tables["held"])}
 
 
 def best_form(winners):
@@ -26,9 +26,9 @@ def best_form(winners):
     return rows.sort_values("scheme", kind="stable").drop_duplicates("scene")  # SCHEMES are in the order of the alphabet
 
 
-def real_map(tables, look, registry):
+def real_map(tables, look, registry, agreed={}):
     """Left: a mark a mechanism, in the colour of its fastest library; a second colour inside is another that is as fast; empty
-    inside: not decided. Right: how many times faster the fastest code of our own is."""
+    inside: not decided. Right: how many times faster the fastest code of our own is. `agreed`: {scene: verdict} of study/merge."""
     mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
     rows = best_form(winners)
@@ -42,13 +42,16 @@ def real_map(tables, look, registry):
         shown |= {name: look.colour(name) for name in members}
         left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if row.settled else "white", linestyle="none")
+        if agreed.get(row.scene) == "differs":
+            left.scatter(row.n, getattr(row, DECIDES), s=200, marker="s", facecolor="none", edgecolor="#444444", linewidth=0, hatch="/////", zorder=3)
     _scales(left, rows.n, rows[DECIDES], "non-zeros a column of the factor L (AMD's order)")
     left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
     forms = [Line2D([], [], marker=mark, linestyle="none", color="#444444", label=family) for family, mark in marks.items()]
     empty = Line2D([], [], marker="o", linestyle="none", markerfacecolor="white", markeredgecolor="#444444", label="not decided")
-    figure.legend(handles=[*colours, empty], loc="upper left", bbox_to_anchor=(0.905, 0.9), fontsize=8.5, title="edge: fastest; inside: as fast",
+    hatched = [Patch(facecolor="white", edgecolor="#444444", hatch="/////", label="depends on the machine")] if "differs" in rows.scene.map(agreed).values else []
+    figure.legend(handles=[*colours, empty, *hatched], loc="upper left", bbox_to_anchor=(0.905, 0.9), fontsize=8.5, title="edge: fastest; inside: as fast",
                   title_fontsize=8.5, alignment="left")
     figure.legend(handles=forms, loc="upper left", bbox_to_anchor=(0.905, 0.58), fontsize=8.5, title="family", title_fontsize=8.5, alignment="left")
     return figure

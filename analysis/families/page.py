@@ -50,15 +50,11 @@ def _formulas(steps):
 def answers(tables, view):
     scenes, held, defaults, mine = tables["scenes"], tables["held"], tables["defaults"], best_form(tables["winners"])
     real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill
-    first = real.equivalent.str.split().explode().value_counts()  # of each library, the scenes on which it is in the equivalence set
+    first = real.equivalent.str.split().explode().value_counts()  # of each library, the scenes on which it is first or as fast
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
     known = {"real": real, "first": sorted(first.items(), key=lambda one: (-one[1], one[0])), "held": summary(held) if len(held) else None, "own": own,
              "defaults": defaults[defaults["mean"].notna()].sort_values("mean")}
     return said(Path(__file__).with_name("answers.j2"), "Not measured: no library was timed that the gate agrees with.", **known if len(mine) else {})
-
-
-def _unknown(count, form):
-    return form.format(f"{count} choices that have no time there are left out") if count else ""
 
 
 def cases(tables, view):
@@ -101,8 +97,9 @@ def _taken(rows):
 def _lost(found, count):
     if pandas.isna(found["mean_loss"]):
         return ""
+    unknown = f"; {found['unknown']} choices that have no time there are left out" if found["unknown"] else ""
     return (f"; on families left out {100 * found['mean_loss']:.1f} % slower than the fastest library on average, {100 * found['worst_loss']:.0f} % "
-            f"at worst ({count} cases{_unknown(found['unknown'], '; {}')})")
+            f"at worst ({count} cases{unknown})")
 
 
 def files(tables, view):

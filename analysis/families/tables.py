@@ -56,7 +56,7 @@ def _winner(timed, cells, names):
     return {"winner": found.winner, "step_us": cells[found.winner]["step_us"], "second": found.second or "",
             "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, **dict(zip(("within_low", "within_high"), within)),
             "chance": found.chance, "holm": False, "decided": found.decided, "settled": found.settled, "equivalent": " ".join(found.equivalent),
-            "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
+            "inside": " ".join(found.inside), "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
 
 
 def growth(scenes, mechanisms):

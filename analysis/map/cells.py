@@ -25,7 +25,7 @@ class Cell:
 
     @property
     def winners(self):
-        """Who may be called the fastest: the winner, or all of the equivalence set, or also those that are open."""
+        """Who may be called the fastest: the winner, or all that are as fast, or also those that are open."""
         if self.ranking is None or self.decided:
             return (self.ranking.winner,) if self.ranking else ()
         return tuple(name for name in self.ranking.ratios if name in (*self.ranking.equivalent, *self.ranking.open))
@@ -59,4 +59,4 @@ def _row(results, cell, layer):
     within = timing.within(results.paired(cell.scene).of(*both), *both) if ranking.second else ()
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": ranking.margin.value, "low": ranking.margin.low,
                   "high": ranking.margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
-                  "processes": len(mine), "record": " ".join(mine.record)} | dict(zip(("within_low", "within_high"), within))
+                  "inside": " ".join(ranking.inside), "processes": len(mine), "record": " ".join(mine.record)} | dict(zip(("within_low", "within_high"), within))

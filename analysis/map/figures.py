@@ -30,11 +30,13 @@ FOLLOWERS = 7    # ratio at which the panel over fill ends
 SHIFT = 0.25     # % of n², of the next contender over fill
 
 
-def draw(tables, view):
+def draw(tables, view, agreed={}):
+    """`agreed`: {layer: {scene: verdict}} of study/merge."""
     results, look = of(tables, view), Look(view.registry)
     pair = "".join(results.samples().blas.mode()[:1]) or "none"  # that of most: other pairs are in no layer
-    return {"f7_map": fastest(results, look, f"Figure 7: fastest library over size and fill; BLAS pair: {pair}", results.layer("libraries")),
-            "map_all": fastest(results, look, f"Fastest of all, code of our own included; BLAS pair: {pair}", results.layer("all")),
+    return {"f7_map": fastest(results, look, f"Figure 7: fastest library over size and fill; BLAS pair: {pair}", results.layer("libraries"),
+                              agreed=agreed.get("libraries", {})),
+            "map_all": fastest(results, look, f"Fastest of all, code of our own included; BLAS pair: {pair}", results.layer("all"), agreed=agreed.get("all", {})),
             "f4_sparse_solvers": sparse(results, look), "f5_fill": over_fill(results, look)}
 
 

@@ -92,6 +92,12 @@ def unmeasured(head, reason, rule, unit="×"):
     return row(head, UNMEASURED, reason, rule.text(unit))
 
 
+def beside(tables):
+    """[(id, claim, the paper's number, [its row in each set's ledger, or None])]"""
+    ledgers = [{(row["id"], row["claim"], row["paper"]): row for row in one.to_dict("records")} for one in tables]
+    return [(*name, [one.get(name) for one in ledgers]) for name in dict.fromkeys(name for one in ledgers for name in one)]
+
+
 def by_id(table):
     """{id: (verdict, its rows' verdicts in words)}: that of all its measured rows, mixed where they differ."""
     return {name: ((MIXED if len({*kinds} - {UNMEASURED}) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")

@@ -1,8 +1,10 @@
 # What the page of the map says besides its figures; the answer to "Which implementation is fastest at which size and fill?".
+from analysis.core import schema
 from analysis.core.controls import judged, said
 from analysis.core.gather import gather
+from analysis.core.view import facts_of, others
 from analysis.map import carry, paper, summary
-from analysis.map.ledger import by_id, told
+from analysis.map.ledger import beside, by_id, told
 from analysis.map.results import FAILURES, of
 
 FEWER = "fewer processes"  # the budget ended before the last of them
@@ -13,7 +15,7 @@ LAST_CENTRED = 602  # variables; the harness centres stretches on the singular p
 def context(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
-    scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
+    scenes, (processors, ledger) = tables["scenes"], ledgers(tables["claims"], view)
     timed = results.timing[results.timing.status == "ok"]
     null = timed.implementation.str.startswith("null/")  # the harness's control
     dense = timed[timed.implementation.isin(paper.dense(results))]
@@ -25,7 +27,7 @@ def context(tables, view):
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": [*step_times(results)], "overhead": overhead, "centred": LAST_CENTRED, "title": paper.TITLE,
-            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": pairs_of(dense),
+            "processors": processors, "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": pairs_of(dense),
             "filled_pairs": pairs_of(dense[dense.fill_asked.notna()]),
             "pairs": [pair | {"used": sorted(ranked.implementation[ranked.blas == pair["name"]].unique())}
                       for pair in view.registry.listed.get("blas", [])],
@@ -33,6 +35,13 @@ def context(tables, view):
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"),
             "spread": [row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")]}
+
+
+def ledgers(claims, view):
+    """(processors of stored sets beside this one and of its commit, the ledgers of this and of these side by side)"""
+    alike = {one: context["cpu_model"] for one in others(view.folder) for context in [facts_of(one)["context"]]
+             if context["commit"] == view.context["commit"] and (one / "map" / schema.DIGESTS).exists()}
+    return [*alike.values()], beside([claims, *(schema.read_table(one, "map", "claims") for one in alike)])
 
 
 def step_times(results):

@@ -57,8 +57,8 @@ def prices(results, names):
 
 
 def settled(table, layer):
-    """{"cells", "decided", "holm", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
+    """{"cells", "decided", "holm", "equivalent", "open", "alone"}: how many cells of a layer were timed, and how they ended."""
     rows = table[(table.layer == layer) & (table.winner != "")]
     decided, settled, holm = (rows[name].fillna(False).astype(bool) for name in ("decided", "settled", "holm"))
     return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(holm.sum()), "equivalent": int((settled & ~decided).sum()),
-            "open": int((~settled & ~decided).sum())}
+            "open": int((~settled & ~decided).sum()), "alone": int((rows.inside == rows.winner).sum())}

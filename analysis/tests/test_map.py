@@ -11,6 +11,7 @@ from analysis.core.files import ROOT, write_json
 from analysis.core.records import Record
 from analysis.core.style import DENSE, SPARSE, Look
 from analysis.core.timing import differing
+from analysis.core.view import View
 from analysis.map import figures, page, summary, tables
 from analysis.map.cells import map_cells, table
 from analysis.map.figures import bounds, broken, shorter
@@ -241,3 +242,18 @@ def test_a_scene_is_read_off_its_name():
     asked = tables._asked(pandas.Series(["four-bar:24,fill=0.35,seed=2", "four-bar:4"]))
     assert list(asked["variables"]) == [50, 10] and asked["fill_asked"][0] == 0.35 and math.isnan(asked["fill_asked"][1])
     assert set(tables.build([], view(registry()))) == set(schema.of_part("map"))
+
+
+def test_the_ledger_has_a_column_for_each_other_processor_of_its_commit(tmp_path, monkeypatch):
+    rows = {"mine": [("T1", "c"), ("T2", "d")], "other": [("T1", "c")], "old": [("T2", "d")]}
+    for name, cpu, commit in (("mine", "x", "new"), ("other", "y", "new"), ("old", "z", "before")):
+        context = {"cpu_model": cpu, "commit": commit, "machine": "", "kernel": "", "compiler": "", "flags": "", "dirty": False, "num_cpus": 1}
+        write_json(tmp_path / name / "set.json", {"profile": "", "only": [], "parts": ["map"], "programs": {}, "context": context, "date": ""})
+        write_json(tmp_path / name / "map" / schema.DIGESTS, {})
+        (tmp_path / name / "raw").mkdir()
+        (tmp_path / name / "raw" / "map.tar.xz").touch()
+    ledger_of = lambda name: pandas.DataFrame([{"id": one, "claim": claim, "paper": "", "ours": name} for one, claim in rows[name]])
+    monkeypatch.setattr(schema, "read_table", lambda folder, *_: ledger_of(folder.name))
+    processors, found = page.ledgers(ledger_of("mine"), View(tmp_path / "mine", "map"))
+    assert processors == ["y"] and [(id, [one and one["ours"] for one in both]) for id, _, _, both in found] == [
+        ("T1", ["mine", "other"]), ("T2", ["mine", None])]

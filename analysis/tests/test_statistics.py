@@ -164,6 +164,27 @@ def test_controls_count_what_is_decided_though_nothing_differs():
     assert unsound["false"] > 30 and not unsound["sound"] and unsound["widest"] > 1.01
 
 
+def test_the_equivalence_set_leaves_out_who_is_shown_to_be_over_five_percent_behind():
+    behind = lambda value, low, high: timing.Ratio(value, low, high, freedom=7)
+    ranking = timing.Ranking("a", {"a": timing.Ratio(1.0, 1.0, 1.0), "near": behind(1.02, 1.0, 1.04), "may": behind(1.2, 1.04, 1.4),
+                                   "slower": behind(1.08, 1.045, 1.12), "far": behind(1.5, 1.4, 1.6), "alone": behind(3.0, 0.0, math.inf)})
+    assert ranking.inside == ("a", "near", "may", "slower", "alone") and ranking.equivalent == ("a", "near")
+    one, both = behind(1.1, 1.06, 1.14), {"a": timing.Ratio(1.0, 1.0, 1.0)}
+    assert timing.Ranking("a", both | {"b": one}).inside == ("a",)
+    assert len(timing.Ranking("a", both | {f"b{number}": one for number in range(9)}).inside) == 10  # asked at once
+
+
+@pytest.mark.parametrize("slower", [1.0, 1.03])
+def test_runs_that_are_there_twice_are_controls_of_the_first_in_each_process(slower):
+    random = numpy.random.default_rng(2)
+    def made(factor, name):
+        return pandas.DataFrame([{"scene": "s", "implementation": who, "environment": "e", "process": number, "status": "ok", "record": f"{name}{number}",
+                                  "step_us": factor * math.exp(0.002 * random.standard_normal())} for number in range(1, 7) for who in ("a", "b")])
+    [row] = controls.repeated(made(1.0, "r"), made(slower, "again"))
+    assert (row["implementation"], row["decided"]) == ("a", slower > 1) and row["ratio"] == pytest.approx(slower, rel=0.01)
+    assert controls.repeated(made(1.0, "r"), made(1.0, "again")[:0]) == []
+
+
 def test_clear_difference_is_decided_and_the_same_is_not():
     random = numpy.random.default_rng(3)
     found = rank(pandas.DataFrame(rows("a", noisy(random, 1.0)) + rows("b", noisy(random, 1.5))))

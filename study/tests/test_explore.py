@@ -14,7 +14,7 @@ from analysis.accuracy.winners import fastest, meeting
 from analysis.core import site, timing
 from analysis.core.files import read_json, write_json
 from analysis.explorer import data
-from analysis.explorer.page import others
+from analysis.core.view import others
 from study.tests.test_site import BEYOND, HIDDEN
 from study.tools import fragments
 

@@ -14,8 +14,9 @@ from analysis.core.files import ROOT, StudyError, read_json, write_json
 from analysis.core.registry import ANCHOR
 from analysis.core.text import layout
 from analysis.core.timing import Ranking, Ratio
+from analysis.map.ledger import beside
 from study.tools import fragments
-from study.tools.merge import agreement, machine
+from study.tools.merge import agreement, machine, main
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import HERE, ORDER, labels, merge, need_alike
 from study.tools.paper import numbers, tables
@@ -244,11 +245,10 @@ def test_a_set_of_a_tree_with_changes_is_not_compared():
     assert agreement.compared(fake("a", "new", "x"), [fake("b", "new", "y", dirty="true")]) == []
 
 
-def test_a_claim_has_a_row_with_the_verdict_of_each_machine(monkeypatch):
-    ledgers = {"first": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "confirmed"}],
-               "second": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "refuted"}, {"id": "F7", "claim": "d", "paper": "", "verdict": "mixed"}]}
-    monkeypatch.setattr(machine, "table", lambda folder, *_: pandas.DataFrame(ledgers[folder]))
-    found = machine.claims([SimpleNamespace(folder=name) for name in ledgers])
+def test_a_claim_has_a_row_with_the_verdict_of_each_machine():
+    ledgers = ([{"id": "T1", "claim": "c", "paper": "2×", "verdict": "confirmed"}],
+               [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "refuted"}, {"id": "F7", "claim": "d", "paper": "", "verdict": "mixed"}])
+    found = beside(map(pandas.DataFrame, ledgers))
     assert [(id, [row and row["verdict"] for row in rows]) for id, _, _, rows in found] == [("T1", ["confirmed", "refuted"]), ("F7", [None, "mixed"])]
 
 
@@ -268,8 +268,9 @@ def edit(path, **values):
 
 @pytest.fixture
 def days(tmp_path, monkeypatch):
-    """Arguments of study/merge: two sets, and where to."""
+    """Arguments of study/merge: two sets, and where to. Pages of parts that are quickly drawn."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(main, "parts", lambda: dict.fromkeys(("families", "scenes"), "Question?"))
     day(1, tmp_path / "1")
     day(2, tmp_path / "2")
     return ["1", "2", "--to", "merged"]
@@ -288,7 +289,9 @@ def test_two_sets_become_a_page_and_a_table(days, tmp_path, capsys):
     page = (tmp_path / "merged" / "index.html").read_text()
     assert "2026-01-02" in page and "What sets of one kind of machine" in page and "days on one machine" not in said + page
     assert "with csc_ldl/uplooking, " in page and " (1)" in page
-    assert "2026-01-02" in (tmp_path / "merged" / "mechanisms.svg").read_text()
+    assert "2026-01-02" in (tmp_path / "merged" / "families" / "2" / "map.svg").read_text()
+    for part in ("families", "scenes"):
+        assert all(f"2026-01-0{number}" in (tmp_path / "merged" / f"{part}.html").read_text() for number in (1, 2)) and f'href="{part}.html"' in page
     edit(tmp_path / "2" / "set.json", context=read_json(tmp_path / "2" / "set.json")["context"] | {"commit": "0" * 40})
     with pytest.raises(StudyError, match="of another build"):
         merge(days)

@@ -6,11 +6,10 @@ from functools import cached_property
 
 import numpy
 import pandas
-from scipy import special
 
 from analysis.core import schema
 from analysis.core.gather import gather
-from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio, holm
+from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio, error, holm, outside
 from analysis.core.view import View, contexts_in
 from analysis.map.results import Results
 from study.core import executor
@@ -92,25 +91,12 @@ def _of_all(ranking, rows):
     return ranking._replace(untimed=tuple(sorted({*rows.implementation} - {*told, *ranking.ratios})))
 
 
-def error(ratio):
-    """Standard error of a ratio's logarithm."""
-    return math.log(ratio.high / ratio.low) / 2 / float(special.stdtrit(ratio.freedom, (1 + CONFIDENCE) / 2)) if ratio.high > ratio.low else 0.0
-
-
-def behind(ratio, variance):
-    """The chance to find it so far over EQUIVALENT, or farther, where it is not over it (Student's, one-sided). `variance`: beyond its interval,
-    of its logarithm; that the intervals' degrees of freedom stay makes the chance larger."""
-    if not (0 < ratio.low <= ratio.high < math.inf and ratio.value > EQUIVALENT):
-        return 1.0
-    own = math.hypot(error(ratio), math.sqrt(variance)) or 1e-9
-    return float(special.stdtr(ratio.freedom, math.log(EQUIVALENT / ratio.value) / own))
-
-
 class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,))):
     """`machines`: for each set its Ranking; `day`: a variance that days add to a ratio's logarithm. A contender is inside on a machine if it is not
     shown to be over 5 % behind the fastest there, where all ratios that the cell has on all machines are asked at once [Holm]."""
     winners = property(lambda self: [one.winner for one in self.machines])
     settled = property(lambda self: all(one.settled for one in self.machines))
+    chances = cached_property(lambda self: outside(self.machines, self.day))
     # Of each machine, those inside.
     sets = property(lambda self: [[name for name, chance in one.items() if chance > 1 - CONFIDENCE] for one in self.chances])
     # Those inside on all machines: the equivalence set that holds on all.
@@ -119,16 +105,6 @@ class Agreement(namedtuple("Agreement", "question machines day", defaults=(0.0,)
     alike = property(lambda self: all(mine.winner in its.equivalent for mine in self.machines for its in self.machines))
     # Whom to take where nobody knows the machine: the least worst loss, of those inside on all, else of all.
     robust = property(lambda self: next((name for name in self.worst if name in self.common), next(iter(self.worst), "")))
-
-    @cached_property
-    def chances(self):
-        """Of each machine {contender: `behind`, corrected}. Twice, as nobody knows before who leads."""
-        found, least = [dict.fromkeys(one.ratios, 1.0) for one in self.machines], 0.0
-        asked = sorted((behind(one, self.day), place, name) for place, ranking in enumerate(self.machines)
-                       for name, one in ranking.ratios.items() if name != ranking.winner)
-        for left, (chance, place, name) in zip(range(len(asked), 0, -1), asked):
-            found[place][name] = least = max(least, 2 * left * chance)
-        return found
 
     @cached_property
     def everywhere(self):

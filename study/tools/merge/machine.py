@@ -87,10 +87,9 @@ def beside(sets):
     return dict(sorted(found.items(), key=lambda one: one[1][1][-1] / one[1][2][-1]))
 
 
-def claims(sets):
-    """[(id, claim, the paper's number, [its row in each machine's ledger, or None])]"""
-    ledgers = [{(row["id"], row["claim"], row["paper"]): row for row in table(one.folder, "map", "claims").to_dict("records")} for one in sets]
-    return [(*name, [one.get(name) for one in ledgers]) for name in dict.fromkeys(name for one in ledgers for name in one)]
+def tables(folder, part):
+    """{name: `table`} of a part."""
+    return {name: table(folder, part, name) for name in schema.of_part(part)}
 
 
 def table(folder, part, name):
@@ -103,4 +102,4 @@ def table(folder, part, name):
 
 def carried(main, other):
     """What the rule of a set costs on the mechanisms of another one."""
-    return rule.carried(*(({name: table(one.folder, "families", name) for name in ("mechanisms", "scenes")}, one.registry) for one in (main, other)))
+    return rule.carried(*((tables(one.folder, "families"), one.registry) for one in (main, other)))

@@ -1,17 +1,16 @@
 # study/merge SET SET …: which winners and equivalence sets hold on all machines, which depend on the processor.
-import base64
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import pandas
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
+from analysis.core import schema, site
 from analysis.core.files import ROOT, StudyError, write_json, write_text
+from analysis.core.gather import gather
 from analysis.core.registry import ANCHOR
-from analysis.core.site import template
-from analysis.core.style import Look, number_axis, save
 from analysis.core.text import layout
+from analysis.core.view import View, parts
+from analysis.map.carry import SOURCES
+from analysis.map.ledger import beside
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 from study.tools.merge import agreement, machine
@@ -22,10 +21,10 @@ ORDER = {"differs": 0, "open": 1, "several": 2, "decided": 3}  # of rows: what a
 
 def merge(arguments):
     parser = Parser(prog="study/merge", description="Merges sets of one commit and the same libraries, from several machines (or days): "
-                    "a page and a table of what holds on all of them.")
+                    "pages and a table of what holds on all of them.")
     parser.add_argument("sets", nargs="+", type=directory, metavar="SET", help="directories of two sets or more")
     parser.add_argument("--to", type=directory, default=ROOT / "results" / "local" / "merged", metavar="DIR",
-                        help="where page and table go (results/local/merged)")
+                        help="where pages and table go (results/local/merged)")
     parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: in how many decided cells does it have the same winner?")
     parser.add_argument("--other-builds", action="store_true", help="sets of other commits, libraries or changed trees too: do they say the same?")
     options = parser.parse_args(arguments)
@@ -55,44 +54,33 @@ def merge(arguments):
     options.to.mkdir(parents=True, exist_ok=True)
     write_text(options.to / "agreement.csv", table.to_csv(index=False))
     libraries = agreement.mechanisms(sets, agreed)
-    about = [{"label": label, "facts": one.facts, "rates": machine.rates(one), "controls": machine.controls(one)} for label, one in zip(machines, sets)]
+    about = [{"label": label, "facts": one.facts, "rates": machine.rates(one), "controls": machine.controls(one),
+              "spread": dict(machine.table(one.folder, "map", "spread")[["source", "percent"]].values)} for label, one in zip(machines, sets)]
     known = {"counts": counts, "layers": agreement.LAYERS, "held": agreement.held(agreed, fresh) if fresh else {},
              "spread": {agreement.SOURCES[source]: one for source, one in spread.items()}}
-    write_text(options.to / "index.html", template(HERE / "page.html.j2").render(
-        known, machines=about, alone=alone, fresh=fresh.facts if fresh else None, rates=machine.RATES,
+    write_text(options.to / "index.html", site.template(HERE / "page.html.j2").render(
+        known, part="index", parts=_pages(sets, about, agreed, options.to), title="What holds on several machines?", machines=about, alone=alone, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR, day="day" in spread,
-        mechanisms=agreement.shares(libraries), claims=machine.claims(sets), figure=_drawn(libraries, sets, options.to / "mechanisms.svg")))
+        mechanisms=agreement.shares(libraries), claims=beside([machine.table(one.folder, "map", "claims") for one in sets]), sources=SOURCES))
     if fresh:
         write_json(options.to / "fresh.json", {"sets": [one.folder.name for one in sets], "run": _about(fresh), "held": known["held"]})
     print(layout(HERE / "said.txt.j2").render(known, labels=machines, page=options.to / "index.html", agreed={
         layer: [one for one in agreed if one.question.layer == layer] for layer in counts}))
 
 
-def _drawn(libraries, sets, path):
-    """The picture's file in base 64; None without mechanisms. A mark a mechanism, by size and non-zeros a column of its factor, in the colour of the
-    library that loses least on the machine where it is worst; hatched where no library is among the best on all machines."""
-    if not libraries:
-        return None
-    features = machine.table(sets[0].folder, "families", "mechanisms").set_index("scene").reindex([one.question.scene for one in libraries])
-    look, shown = Look(sets[0].registry), {}
-    figure, axes = plt.subplots(figsize=(8.6, 5.4))
-    for one in filter(lambda one: one.robust, libraries):
-        known, colour = features.loc[one.question.scene], look.colour(one.robust)
-        shown[one.robust] = colour
-        differs = one.verdict == "differs"
-        axes.scatter(known.n, known.per_column, s=70, facecolor="white" if differs else colour, edgecolor=colour, hatch="/////" if differs else None)
-    for axis in (axes.xaxis, axes.yaxis):
-        number_axis(axis)
-    axes.set(xlabel="variables n", ylabel="non-zeros a column of the factor L (AMD's order)", title="The library that loses least on the machine where it is worst")
-    axes.grid(True, which="major")
-    axes.set_axisbelow(True)
-    handles = [Line2D([], [], marker="o", linestyle="none", markersize=8, color=colour, label=name) for name, colour in sorted(shown.items())]
-    hatched = Patch(facecolor="white", edgecolor="#444444", hatch="/////", label="depends on the machine")
-    axes.legend(handles=[*handles, hatched], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
-    save(figure, path, "; ".join(f"{one.facts['context']['cpu_model']}, {one.facts['date'][:10]}" for one in sets))
-    plt.close(figure)
-    return base64.b64encode(path.read_bytes()).decode()
+def _pages(sets, machines, agreed, to):
+    """Writes a page for each part that all have, with what each set's own page says and its figures; {part: question} of these."""
+    verdicts = gather((one.question.layer, one) for one in sorted(agreed, key=lambda one: one.question.form, reverse=True))  # the penalty form is the last
+    verdicts = {layer: {one.question.scene: one.verdict for one in some} for layer, some in verdicts.items()}
+    pages = {part: question for part, question in parts().items() if all((one.folder / part / schema.DIGESTS).exists() for one in sets)}
+    said = [site.answers_of(one.folder) for one in sets]
+    for part, question in pages.items():
+        more = {"agreed": verdicts} if part in machine.PARTS else {}
+        drawn = [site.draw(machine.tables(one.folder, part), View(one.folder, part), to / part / f"{place}", **more) for place, one in enumerate(sets, 1)]
+        write_text(to / f"{part}.html", site.template(HERE / "part.html.j2").render(
+            part=part, parts=pages, title=question, machines=machines, drawn=drawn, said=[one[part] for one in said]))
+    return pages
 
 
 def _about(fresh):

@@ -1,7 +1,6 @@
 # What the paper is built from: the tables of one set, and the other stored sets.
 from functools import cache, cached_property
 
-from analysis.core import schema
 from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
 from analysis.map.results import of
@@ -28,7 +27,7 @@ class Known(Folder):
     @cache
     def tables(self, part):
         """{table: DataFrame} of a part of a set; empty where the set lacks it."""
-        return {name: machine.table(self.folder, part, name) for name in schema.of_part(part)}
+        return machine.tables(self.folder, part)
 
     def view(self, part):
         return View(self.folder, part)

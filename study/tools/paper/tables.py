@@ -96,17 +96,15 @@ def ranking(known):
 
 def claims(known):
     """The claims of 2008, with theirs, ours in each set and the verdict; below, those without."""
-    beside = {one.folder.name: one.tables("map")["claims"].set_index(["id", "claim"]) for one in known.sets[1:]}
-    ours = lambda row: "–" if row is None or not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+    ours = lambda row: row["ours"] + (f" ({row['low']} to {row['high']})" if row["low"] else "") if row and row["ours"] else "–"
     rows, without = [], {}  # those without a verdict by id and reason
-    for row in known.tables("map")["claims"].itertuples():
-        theirs = [its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None for its in beside.values()]
-        verdicts = [row.verdict, *(one.verdict for one in theirs if one is not None)]
+    for name, claim, paper, found in ledger.beside([one.tables("map")["claims"] for one in known.sets]):
+        verdicts = dict.fromkeys(row["verdict"] for row in found if row)
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
-            without.setdefault((row.id, row.reason), []).append(row.claim)
+            without.setdefault((name, next(filter(None, found))["reason"]), []).append(claim)
         else:
-            rows.append((row.id, row.claim, row.paper, *map(ours, (row, *theirs)), "; ".join(dict.fromkeys(verdicts))))
-    heads = dict.fromkeys((known.folder.name, *beside), r"P{%.0fmm}" % (44 / len(known.sets)))
+            rows.append((name, claim, paper, *map(ours, found), "; ".join(verdicts)))
+    heads = {one.folder.name: r"P{%.0fmm}" % (44 / len(known.sets)) for one in known.sets}
     said = (f"{name}: {some[0]}" + (f", and {len(some) - 1} more" if len(some) > 1 else "") + f" ({reason.rstrip('.')})"
             for (name, reason), some in without.items())
     return (table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
