@@ -59,4 +59,5 @@ def of_column(kind, subject, known, records, view):
     won = won.sort_values(["fill_asked", "layer", "required"], ascending=[True, False, False], na_position="first")
     again = measured[measured.role == CONTROL]
     rows = measured[measured.role == "time"].merge(again[KEY].drop_duplicates())
-    return {"controls": pandas.DataFrame(repeated(rows, again)), "points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}
+    return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named),
+            "controls": pandas.DataFrame(repeated(rows, again))}

@@ -1,5 +1,5 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
-from dataclasses import dataclass
+from collections import namedtuple
 
 import pandas
 
@@ -7,17 +7,9 @@ from analysis.core import timing
 from analysis.map.timed import layers
 
 
-@dataclass(frozen=True)
-class Cell:
-    """One scene as a map shows it."""
-    scene: str
-    variables: int
-    fill_asked: float | None        # share; None: the mechanism's own
-    fill_percent: float             # as measured
-    ranking: timing.Ranking | None  # None: nobody could be timed there
-    excluded: tuple                 # names of those who were too slow
-    failed: tuple
-
+class Cell(namedtuple("Cell", "scene variables fill_asked fill_percent ranking excluded failed")):
+    """One scene as a map shows it. `fill_asked`: share, None: the mechanism's own; `fill_percent`: as measured; `ranking`: None where nobody
+    could be timed; `excluded`: names of those who were too slow."""
     # Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten.
     decided = property(lambda self: bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed)))
     settled = property(lambda self: bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed)))

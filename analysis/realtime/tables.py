@@ -27,8 +27,8 @@ def build(records, view):
                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()]
     judging, again = (_runs([one for one in records if one.role == role]) for role in ("judging", CONTROL))
     ended = [one[one.status.isin(FINISHED)].assign(status="ok") for one in (judging, again)]
-    return {"controls": repeated(*ended, "mean_us"), "steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
-            "judging": pandas.DataFrame(_judging(judging)), "tried": found["search"],
+    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"), "machine": pandas.DataFrame(machine),
+            "judging": pandas.DataFrame(_judging(judging)), "controls": repeated(*ended, "mean_us"), "tried": found["search"],
             "largest": pandas.DataFrame(_largest(found["search"]))}
 
 

@@ -1,6 +1,6 @@
 # A contest on one scene: a look at everyone, the gate, and the times of those who agree and are near the fastest.
 from collections import namedtuple
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from study.core.cell import Cell, by_environment, twin_of
@@ -42,18 +42,9 @@ def agreeing(lab, asked, **limits):
     return [[who for who in one.contenders if said[who][0] == "agrees"] for one, said in zip(asked, verdicts(lab, asked, **limits))]
 
 
-@dataclass(frozen=True)
-class Form:
-    """A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`."""
-    role: str
-    contenders: list
-    processes: int
-    samples: int
-    settings: tuple = ()   # of the step
-    wide: tuple = ()       # names of those that are up to WIDE
-    stretch: tuple = ()    # that is timed, else the scene's
-    look: int = STEPS      # steps of the look
-    patience: float = 1.0
+# A form of the step in which a scene is a contest. Roles of the records: `role`-look, `role`-gate and `role`. settings: of the step; wide: names of
+# those that are up to WIDE; stretch: that is timed, else the scene's; look: steps of the look.
+Form = namedtuple("Form", "role contenders processes samples settings wide stretch look patience", defaults=((), (), (), STEPS, 1.0))
 
 
 def contests(lab, scene, forms, *, own, always=False, control=False):

@@ -3,14 +3,15 @@
 import json
 import math
 import random
-from dataclasses import dataclass, replace
+from collections import namedtuple
+from dataclasses import replace
 from pathlib import Path
 
 from analysis.core.controls import CONTROL
 from analysis.core.files import ROOT, StudyError, read_yaml
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import ANDREWS, SOLVERS, Subject, subject_of
+from analysis.engines.subjects import ANDREWS, SOLVERS, subject_of
 from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.curves import Curve, follow
@@ -28,14 +29,8 @@ SET_UP = "study/setup --engines"
 LIST = Path(__file__).with_name("settings.yaml")
 
 
-@dataclass(frozen=True)
-class EngineSetting:
-    """What is passed to an engine's program, and what changes along its curve."""
-    engine: str
-    over: str          # "step" (s) or "accuracy"
-    values: tuple      # of `over`, the coarsest first
-    options: tuple = ()
-
+class EngineSetting(namedtuple("EngineSetting", "engine over values options", defaults=((),))):
+    """What is passed to an engine's program; `over`: "step" (s) or "accuracy", of which `values` make its curve, the coarsest first."""
     def words(self, value):
         return ("--setting", *(f"{key}={text}" for key, text in (*self.options, (self.over, f"{value:g}"))))
 
@@ -80,11 +75,8 @@ def unavailable():
     return {engine: found.get(engine, f"its program is not built: {SET_UP}") for engine in read_list()}
 
 
-@dataclass(frozen=True)
-class Bench:
+class Bench(namedtuple("Bench", "lab subject")):
     """Runs of one subject."""
-    lab: object
-    subject: Subject
 
     def engines(self, names):
         """Their curves, all settings at once; then, of ODE, the candidates in the build with our flags."""

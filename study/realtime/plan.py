@@ -1,11 +1,11 @@
 # Steps against the deadline that real time sets them, their own length: distributions of their times, what judging them costs,
 # and the search for the largest N-four-bar that keeps it.
-from dataclasses import dataclass
+from collections import namedtuple
 from functools import cache
 
 from analysis.core.controls import CONTROL
 from analysis.realtime.tables import judge, needs_null
-from study.core.cell import Cell, Contender
+from study.core.cell import Cell
 from study.core.profile import by_share
 from study.core.setting import Setting
 
@@ -24,12 +24,7 @@ FASTEST = ("compiled_chains/sweeps", "compiled_ldl/fronts")  # what judging cost
 NULL = "../study/realtime/null_process"  # as seen from the build
 
 
-@dataclass(frozen=True)
-class Case:
-    contender: Contender
-    scheme: str
-    step: float
-
+class Case(namedtuple("Case", "contender scheme step")):
     def cell(self, role, loops, duration, number=0):
         return Cell("simulate", f"four-bar:{loops}", (self.contender,), (
             "--scheme", self.scheme, "--step", f"{self.step:g}", "--duration", f"{duration:g}",

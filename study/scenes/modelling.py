@@ -4,7 +4,8 @@
 # (the stretch of its first second). Contenders take turns within a process, but cases are scenes: they take turns
 # by processes, in an order shuffled anew in each round, and are compared round by round.
 import random
-from dataclasses import dataclass, replace
+from collections import namedtuple
+from dataclasses import replace
 
 from analysis.core.registry import TWIN
 from study.core.cell import Cell, by_environment
@@ -18,15 +19,9 @@ FAINT = 1e-9  # stiffness (N/m) and damping (N s/m) that cost like any other and
 PLAIN = "plain"
 
 
-@dataclass(frozen=True)
-class Case:
-    name: str
-    piece: str            # what it is compared for
-    scene: str = PLAIN    # which of scenes()
-    options: tuple = ()
-    steps: int = STRETCH  # of the stretch, and of the run, where that is the early one
-    base: str = PLAIN     # the case that it is compared with
-
+class Case(namedtuple("Case", "name piece scene options steps base", defaults=(PLAIN, (), STRETCH, PLAIN))):
+    """`piece`: what it is compared for; `scene`: one of scenes(); `steps`: of the stretch, and of the run, where that is the early one; `base`: the
+    case that it is compared with."""
     file_name = property(lambda self: slug(self.name))
 
 

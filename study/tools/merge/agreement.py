@@ -182,12 +182,7 @@ def shares(agreed):
 def held(agreed, fresh):
     """{layer: (decided cells that a further set answers; of these with its winner in their set; and where it shows that theirs is far behind)}."""
     known = questions(fresh)
-    found = gather((one.question.layer, _against(one.common, known[one.question])) for one in agreed
-                   if one.verdict == "decided" and one.question in known)
+    behind = lambda name, ranking: name in ranking.ratios and ranking.ratios[name].low > EQUIVALENT  # shown to be more than that
+    found = gather((one.question.layer, (ranking.winner in one.common, all(behind(name, ranking) for name in one.common)))
+                   for one in agreed if one.verdict == "decided" for ranking in [known.get(one.question)] if ranking)
     return {layer: (len(cells), *map(sum, zip(*cells))) for layer, cells in found.items()}
-
-
-def _against(common, ranking):
-    """Whether a ranking's winner is one of `common`, and whether it shows all of these to be more than EQUIVALENT behind."""
-    behind = [name in ranking.ratios and ranking.ratios[name].low > EQUIVALENT for name in common]
-    return ranking.winner in common, all(behind)

@@ -59,7 +59,8 @@ def merge(arguments):
     known = {"counts": counts, "layers": agreement.LAYERS, "held": agreement.held(agreed, fresh) if fresh else {},
              "spread": {agreement.SOURCES[source]: one for source, one in spread.items()}}
     write_text(options.to / "index.html", site.template(HERE / "page.html.j2").render(
-        known, part="index", parts=_pages(sets, about, agreed, options.to), title="What holds on several machines?", machines=about, alone=alone, fresh=fresh.facts if fresh else None, rates=machine.RATES,
+        known, part="index", parts=_pages(sets, about, agreed, options.to), title="What holds on several machines?", machines=about,
+        alone=alone, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.beside(sets).items() if name in sets[0].registry.variants}, anchor=ANCHOR, day="day" in spread,
         mechanisms=agreement.shares(libraries), claims=beside([machine.table(one.folder, "map", "claims") for one in sets]), sources=SOURCES))
@@ -71,13 +72,14 @@ def merge(arguments):
 
 def _pages(sets, machines, agreed, to):
     """Writes a page for each part that all have, with what each set's own page says and its figures; {part: question} of these."""
-    verdicts = gather((one.question.layer, one) for one in sorted(agreed, key=lambda one: one.question.form, reverse=True))  # the penalty form is the last
+    verdicts = gather((one.question.layer, one) for one in sorted(agreed, key=lambda one: one.question.form, reverse=True))  # penalty last
     verdicts = {layer: {one.question.scene: one.verdict for one in some} for layer, some in verdicts.items()}
     pages = {part: question for part, question in parts().items() if all((one.folder / part / schema.DIGESTS).exists() for one in sets)}
     said = [site.answers_of(one.folder) for one in sets]
     for part, question in pages.items():
         more = {"agreed": verdicts} if part in machine.PARTS else {}
-        drawn = [site.draw(machine.tables(one.folder, part), View(one.folder, part), to / part / f"{place}", **more) for place, one in enumerate(sets, 1)]
+        drawn = [site.draw(machine.tables(one.folder, part), View(one.folder, part), to / part / f"{place}", **more)
+                 for place, one in enumerate(sets, 1)]
         write_text(to / f"{part}.html", site.template(HERE / "part.html.j2").render(
             part=part, parts=pages, title=question, machines=machines, drawn=drawn, said=[one[part] for one in said]))
     return pages
