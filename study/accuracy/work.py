@@ -148,7 +148,7 @@ def _rounds(runs, scene, processes, open_only=False):
     for point, contenders in points.items():  # the same contenders in all processes, in the order of the registry
         chosen.setdefault(point, [one for one in runs.names.values() if one.name in contenders])
     rounds = [("time", *point) for point in points]
-    if scene == runs.subject.scene and runs.subject.loops and not open_only:
+    if scene == runs.subject.scene and not open_only:
         rounds += [(CONTROL, *point) for point in [*points][:1]]
     for number in range(1, processes + 1):  # what drifts falls on all points alike
         for role, *point in rounds:
