@@ -26,7 +26,8 @@ ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r
 
 def tex(text):
     """A text as LaTeX prints it."""
-    return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+    escaped = re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+    return re.sub(r"(?<![\w-])-(?=\d)", r"\(-\)", re.sub("`([^`]+)`", r"\\texttt{\1}", escaped))  # a command; a minus
 
 
 RANKED = 12     # libraries of the table of ranks
