@@ -44,7 +44,7 @@ function words(x, y, text, more = {}) {
 // is a line, such as a deadline. Where names have no room beside the bars they stand above, in as many lines as they need.
 function drawRanking(rows, axis, width, label, mark = null) {
   const narrow = width < 560 || rows.some((one) => one.name.length > 26), left = narrow ? 10 : 190, right = width - (narrow ? 14 : 170);
-  const fits = (names) => names.every(([name], i) => 7.6 * name.length + 6.6 * rows[i].text.length < width - 14);
+  const fits = (names) => names.every(([name], i) => 7.2 * name.length + 6.2 * rows[i].text.length < width - 14);
   const whole = rows.map((one) => [one.name]), names = !narrow || fits(whole) ? whole : rows.map((one) => one.name.split(/, (.*)/).filter(Boolean));
   const below = narrow && !fits(names), lines = Math.max(...names.map((one) => one.length)) + below;
   const titles = 6.4 * axis.length < width ? [axis] : axis.split(/; (.*)/).filter(Boolean);
