@@ -20,7 +20,7 @@ SHOWN = 2.5   # times the least, at which the lower panels end at most
 GAP = 2.6     # times the shorter of two steps
 OTHERS = {"color": "#c4c8ce", "linewidth": 0.7, "marker": ".", "markersize": 3, "zorder": 1}
 RINGED = "fastest for a required error (dashed)"
-RING = {"marker": "o", "markersize": 13, "markerfacecolor": "none", "markeredgecolor": "black", "markeredgewidth": 1.3}
+RING = {"marker": "o", "markersize": 13, "markerfacecolor": "none", "markeredgecolor": "black", "markeredgewidth": 1.3, "clip_on": False}
 TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
 STRONG, WEAK = 0.95, 0.45  # a winner that is decided or has its equals named; one that is open
 NONE = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
@@ -109,7 +109,7 @@ def _panel(axes, rows, series, front, won):
     axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post", label="front")
     axes.plot(*numpy.concatenate(others).T, **OTHERS, label="others")
     for required in won.required:
-        axes.axhline(required, color="black", linewidth=0.8, linestyle=(0, (2, 2)), zorder=1.5)
+        axes.axhline(required, color="black", linewidth=0.8, linestyle=(0, (5, 3)), zorder=1.5)
     axes.plot(won.time, won.error, linestyle="none", zorder=5, **RING, label=RINGED if len(won) else None)
 
 

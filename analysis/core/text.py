@@ -21,6 +21,11 @@ def number(value, digits=3):
     return power if mantissa == "1" else f"{mantissa}·{power}"
 
 
+def percent(share, digits=0):
+    """"5 %"; a dash if there is none."""
+    return "–" if share is None or math.isnan(share) else f"{100 * share:.{digits}f} %"
+
+
 def step(seconds):
     """"1.25 ms" or "39 µs"."""
     return f"{1e3 * seconds:.3g} ms" if seconds >= 1e-4 else f"{1e6 * seconds:.3g} µs"

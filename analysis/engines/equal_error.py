@@ -8,7 +8,7 @@ from analysis.engines.runs import NATIVE
 LIMITS = tuple(10.0**-power for power in range(1, 13))  # well above FLOOR, where noise would decide who meets one
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
 CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
-SIDES = {"chains": "our code for chains", "fronts": "our general code", "library": "the fastest library", "paper": "the paper's scheme"}
+SIDES = {"chains": "our code for chains", "fronts": "our general code", "library": "the fastest library", "paper": "the scheme of 2008"}
 ABOUT = {"chains": CHAINS, "fronts": FRONTS, "library": "any variant on a library",
          "paper": "any variant, in the penalty form with the automatic penalty factor or the paper's, all else as in the paper's step"}
 NOT_MEASURED, UNSERVED, UNREACHED = "not measured", "not served", "not reached"  # what reasons begin with

@@ -41,37 +41,41 @@ function words(x, y, text, more = {}) {
 }
 
 // A row: {name, value, low, high, colour, hollow, own: {us, value}, group, onclick}. `axis` names the value; `mark`: {value, text}
-// is a line, such as a deadline.
+// is a line, such as a deadline. Where names have no room beside the bars they stand above, in as many lines as they need.
 function drawRanking(rows, axis, width, label, mark = null) {
   const narrow = width < 560 || rows.some((one) => one.name.length > 26), left = narrow ? 10 : 190, right = width - (narrow ? 14 : 170);
-  const step = narrow ? 40 : 25, top = 10;
-  const height = top + rows.length * step + 46, svg = drawing(width, height, label);
+  const fits = (names) => names.every(([name], i) => 7.2 * name.length + 6.2 * rows[i].text.length < width - 14);
+  const whole = rows.map((one) => [one.name]), names = !narrow || fits(whole) ? whole : rows.map((one) => one.name.split(/, (.*)/).filter(Boolean));
+  const below = narrow && !fits(names), lines = Math.max(...names.map((one) => one.length)) + below;
+  const titles = 6.4 * axis.length < width ? [axis] : axis.split(/; (.*)/).filter(Boolean);
+  const step = narrow ? 24 + 16 * lines : 25, top = 10, foot = 26 + 15 * titles.length;
+  const height = top + rows.length * step + foot + 5, svg = drawing(width, height, label);
   const all = rows.flatMap((one) => [one.value, one.low, one.high, one.own?.value]).concat(mark?.value).filter((one) => one > 0 && Number.isFinite(one));
   const [least, most] = [Math.min(...all) / 1.06, Math.max(...all) * 1.06], x = scale(least, Math.max(most, least * 1.3), left, right);
   for (const tick of x.ticks) {
-    svg.append(element("line", {x1: x.at(tick), x2: x.at(tick), y1: top, y2: height - 40, stroke: LINE}));
-    svg.append(words(x.at(tick), height - 24, short(tick), {"text-anchor": "middle", fill: SOFT, "font-size": 12}));
+    svg.append(element("line", {x1: x.at(tick), x2: x.at(tick), y1: top, y2: height - foot, stroke: LINE}));
+    svg.append(words(x.at(tick), height - foot + 16, short(tick), {"text-anchor": "middle", fill: SOFT, "font-size": 12}));
   }
-  svg.append(words((left + right) / 2, height - 6, axis, {"text-anchor": "middle", fill: SOFT, "font-size": 12}));
+  titles.forEach((one, i) => svg.append(words((left + right) / 2, height - foot + 34 + 15 * i, one, {"text-anchor": "middle", fill: SOFT, "font-size": 12})));
   if (mark) {
     const at = x.at(mark.value);
-    svg.append(element("line", {x1: at, x2: at, y1: top, y2: height - 40, stroke: "var(--bad)", "stroke-dasharray": "5 3"}));
-    svg.append(words(at - 4, height - 44, mark.text, {"text-anchor": "end", fill: "var(--bad)", "font-size": 11}));
+    svg.append(element("line", {x1: at, x2: at, y1: top, y2: height - foot, stroke: "var(--bad)", "stroke-dasharray": "5 3"}));
+    svg.append(words(at - 4, height - foot - 4, mark.text, {"text-anchor": "end", fill: "var(--bad)", "font-size": 11}));
   }
   rows.forEach((row, place) => {
-    const y = top + place * step + (narrow ? 28 : 13), clamp = (value) => Math.min(Math.max(x.at(value), left), right);
+    const begin = top + place * step, y = begin + (narrow ? step - 12 : 13), clamp = (value) => Math.min(Math.max(x.at(value), left), right);
     const group = element("g", {class: "bar", "data-name": row.name, onclick: row.onclick}, element("title", {}, row.title));
     const tied = ["fastest", "as fast"].includes(row.group), at = clamp(row.value), colour = row.colour;
-    group.append(element("rect", {x: 0, y: top + place * step, width, height: step, fill: tied ? "var(--wash)" : "transparent"}));
-    group.append(words(narrow ? left : left - 8, narrow ? y - 12 : y + 4, row.name,
-                       {"text-anchor": narrow ? "start" : "end", "font-weight": row.group === "fastest" ? 600 : 400}));
+    group.append(element("rect", {x: 0, y: begin, width, height: step, fill: tied ? "var(--wash)" : "transparent"}));
+    names[place].forEach((name, i) => group.append(words(narrow ? left : left - 8, narrow ? begin + 16 * (i + 1) : y + 4, name,
+      {"text-anchor": narrow ? "start" : "end", "font-weight": row.group === "fastest" && !i ? 600 : 400, ...(i ? {fill: SOFT, "font-size": 12} : {})})));
     group.append(element("rect", {x: left, y: y - 5, width: Math.max(at - left, 1), height: 10, fill: colour, "fill-opacity": row.hollow ? 0.12 : 0.3}));
     if (row.low < row.high)
       group.append(element("line", {x1: clamp(row.low || least), x2: clamp(row.high), y1: y, y2: y, stroke: colour, "stroke-width": 2.5}));
     group.append(element("circle", {cx: at, cy: y, r: 4.5, fill: row.hollow ? "var(--paper)" : colour, stroke: colour, "stroke-width": 1.6}));
     if (row.own?.value > 0) group.append(diamond(clamp(row.own.value), y));
-    group.append(words(narrow ? width - 4 : right + 10, narrow ? y - 12 : y + 4, row.text,
-                       {"text-anchor": narrow ? "end" : "start", "font-size": 12, fill: SOFT}));
+    group.append(words(below ? left : narrow ? width - 4 : right + 10, narrow ? begin + 16 * (below ? lines : 1) : y + 4, row.text,
+                       {"text-anchor": narrow && !below ? "end" : "start", "font-size": 12, fill: SOFT}));
     svg.append(group);
   });
   return svg;

@@ -1,4 +1,5 @@
 # What the part is held to, each with what was found in this set.
+from analysis.core.text import percent
 from analysis.families import by_hand
 from analysis.families.rule import MUCH, WITHIN, summary
 
@@ -26,7 +27,7 @@ def _rule(held):
     found = summary(held)
     shares = ((f"its step times are within {WITHIN:g} times of the predicted", "within"), ("they are inside the range that is given", "inside"))
     return [*_losses("the rule of `mbs describe`", found, len(held)),
-            *((what, f"at least {SHARE:.0%}", f"{found[share]:.0%} of {found['timed']}", found[share] >= SHARE) for what, share in shares)]
+            *((what, f"at least {percent(SHARE)}", f"{percent(found[share])} of {found['timed']}", found[share] >= SHARE) for what, share in shares)]
 
 
 def _by_hand(cases):
@@ -35,7 +36,7 @@ def _by_hand(cases):
 
 def _losses(rule, found, count):
     known = f", of {count - found['unknown']} of {count} choices: the others have no time" if found["unknown"] else ""
-    return [(f"{what} loss of {rule}, on families left out", f"at most {most:.0%}", f"{loss:.1%}{known}", False if loss > most else None if known else True)
+    return [(f"{what} loss of {rule}, on families left out", f"at most {percent(most)}", f"{percent(loss, 1)}{known}", False if loss > most else None if known else True)
             for what, most, loss in (("mean", MEAN, found["mean_loss"]), ("worst", MUCH, found["worst_loss"]))]
 
 

@@ -89,4 +89,4 @@ def _lines(axes, rows, windows, ends):
     axes.plot(automatic.step[~good], automatic.penalty[~good], "kX", markersize=7, markeredgecolor="white", markeredgewidth=0.6,
               label="automatic α is not ok")
     axes.plot(*PAPER, "*", color="#CC79A7", markersize=11, markeredgecolor="black", markeredgewidth=0.6, linestyle="none",
-              label="the paper's setting")
+              label="the setting of 2008")

@@ -284,8 +284,8 @@ def test_bounds_say_what_does_not_hold_and_where():
     scenes.loc[scenes.scene == "grid:10", "verdict"] = "disagrees"
     scenes.loc[(scenes.scene == "beam:100") & (scenes.implementation == "compiled_own/x"), "to_rival"] = 0.8
     rows = {what: (text, holds) for what, _, text, holds in bounds.bounds(found | {"scenes": scenes})}
-    assert rows["worst loss of the rule by hand, on families left out"] == ("0.0%", True)
-    assert rows["they are inside the range that is given"] == ("100% of 18", True)
+    assert rows["worst loss of the rule by hand, on families left out"] == ("0.0 %", True)
+    assert rows["they are inside the range that is given"] == ("100 % of 18", True)
     assert rows["who has a time agrees with the reference, in both forms"][1] is False
     text, holds = rows["compiled code, up to n = 2000"]
     assert holds is False and "not on: beam:100 1.25" in text and "17 of 18" in text

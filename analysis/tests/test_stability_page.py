@@ -61,7 +61,7 @@ def test_the_map_names_every_outcome_that_occurs():
     figure = figures.draw(made(maps()), VIEW)["penalty-double"]
     named = {text.get_text() for text in figure.legends[0].get_texts()}
     assert {figures.category(status) for status in STATUSES} - {"ok"} <= named
-    assert {"estimated lower end", "estimated upper end", "automatic α", "the paper's setting"} <= named
+    assert {"estimated lower end", "estimated upper end", "automatic α", "the setting of 2008"} <= named
     plt.close(figure)
 
 

@@ -517,6 +517,23 @@ def test_rows_marks_and_files(page):
     assert browser.value("explorer.state.scene") == browser.value("document.querySelectorAll('#map .mark title')[3].textContent.split(': ')[0]")
 
 
+BEYOND_FRAME = """[...document.querySelectorAll('svg text')].filter((one) => { const [box, frame] = [one, one.ownerSVGElement].map(
+  (some) => some.getBoundingClientRect()); return box.left < frame.left || box.right > frame.right; }).map((one) => one.textContent)"""
+TOUCHING = """[...document.querySelectorAll('.bar')].flatMap((bar) => [...bar.querySelectorAll('text')].flatMap((one, i, all) => all.slice(i + 1).filter((other) => {
+  const [a, b] = [one, other].map((some) => some.getBoundingClientRect());
+  return a.left < b.right && b.left < a.right && a.top < b.bottom - 2 && b.top < a.bottom - 2; }).map((other) => `${one.textContent} | ${other.textContent}`)))"""
+
+
+@pytest.mark.parametrize("scene", ["four-bar:10", "ladder:10"])
+def test_no_words_of_a_ranking_touch_each_other_or_leave_it(page, scene):
+    browser = page(f"scene={scene}&error=0.001&deadline=5")
+    for width in (360, 700, 1200):
+        browser.resize(width, 760)
+        browser.value("new Promise((done) => setTimeout(done, 400))")
+        assert browser.value("document.querySelectorAll('#points .bar').length") > 3
+        assert browser.value(TOUCHING) == browser.value(BEYOND_FRAME) == [], width
+
+
 def test_what_is_not_drawn_cannot_be_saved(page):
     browser = page("no=penalty,saddle")
     assert browser.value("document.querySelectorAll('#map svg, #near svg').length") == 0
@@ -551,7 +568,6 @@ def test_keys_and_width(page):
         browser.value("new Promise((done) => setTimeout(done, 400))")
         browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
         assert browser.value(BEYOND) <= 0
-        assert browser.value("""[...document.querySelectorAll('svg text')].filter((one) => { const [box, frame] = [one, one.ownerSVGElement].map(
-          (some) => some.getBoundingClientRect()); return box.left < frame.left || box.right > frame.right; }).map((one) => one.textContent)""") == []
+        assert browser.value(BEYOND_FRAME) == []
         assert width == 360 or browser.value(HIDDEN) == []
     browser.resize(1200, 760)

@@ -272,6 +272,17 @@ def test_figures_are_of_print_size(printed):
     assert (box.width, box.height) == pytest.approx((figures.TEXT, figures.DRAWN["map"][1]), abs=0.03)
 
 
+def test_steps_that_the_budget_dropped_are_counted(known):
+    figure, rows = figures.steps(known), known.tables("realtime")["steps"]
+    mine = rows[(rows.scheme == "penalty") & (rows.loops == 40) & rows.implementation.isin([one.get_text() for one in figure.axes[0].get_yticklabels()])]
+    lost = int((mine.status == "dropped").sum())
+    assert lost and f"not drawn: {lost} that the budget dropped" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_latex_prints_what_was_meant():
+    assert tables.tex("`mbs` --step 2-3 -8.1 (-1e-6)") == r"\texttt{mbs} -{}-step 2-3 \(-\)8.1 (\(-\)1e-6)"
+
+
 def test_letters_are_large_enough_to_print(printed):
     assert min(text.get_fontsize() for text in printed.findobj(Text) if text.get_text()) >= 6
     assert not re.findall(r"\\tiny|\\fontsize\{[0-5](?!\d)", TEXT)

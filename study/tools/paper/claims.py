@@ -7,13 +7,13 @@ from operator import eq, itemgetter
 from scipy.stats import gmean
 
 from analysis.accuracy import pairs
-from analysis.core.text import between, bounded, number, span
+from analysis.core.text import between, bounded, number, percent, span
 from analysis.engines.equal_error import compared
 from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, GAINED, HYBRID, SCALAR, filled_by_phase, losses, percent, phases, profiled, real_mechanisms
+from study.tools.paper.numbers import DENSE, GAINED, HYBRID, SCALAR, filled_by_phase, losses, phases, profiled, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 

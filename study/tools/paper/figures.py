@@ -30,11 +30,8 @@ MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")  # of the libraries that lead o
 
 def own_fill(known):
     figure = maps.sparse(known.results, Look(known.registry))
-    for text in figure.texts:  # which the caption says
-        text.set_text("")
-    figure.axes[0].set_title("")
-    for axes in figure.axes:
-        axes.set_ylabel("time ÷ the least")
+    plt.setp(figure.texts, text="")  # which the caption says
+    plt.setp(figure.axes, title="", ylabel="time ÷ the least")
     return figure
 
 
@@ -81,8 +78,8 @@ def window(known):
 def steps(known):
     """Of the larger size, in the penalty form: the fastest of whom there are times."""
     tables = known.tables("realtime")
-    rows = tables["steps"].loc[lambda rows: (rows.scheme == "penalty") & rows.median_us.notna()]
-    rows = rows[rows.loops == rows.loops.max()]
+    rows = tables["steps"].loc[lambda rows: rows.scheme == "penalty"]
+    rows = rows[rows.loops == rows.loops[rows.median_us.notna()].max()]
     return realtime.distributions(rows[rows.implementation.isin(realtime.order(rows)[:STEPS])] if len(rows) else rows, tables["machine"])
 
 
@@ -94,8 +91,7 @@ def own(known):
         colours, forms = figure.legends
         below(figure, forms, 5)
         colours.remove()
-    for axes in figure.axes:
-        axes.set(title="", ylabel="times as fast")
+    plt.setp(figure.axes, title="", ylabel="times as fast")
     figure.axes[0].set_subplotspec(GridSpec(1, 1, figure=figure)[0])  # the panel that is left has the whole width
     return figure
 
@@ -116,8 +112,7 @@ def phases(known):
         shown[f"n = {mine.variables.iloc[0]:.0f}, {100 * fill:.0f} % filled"] = mine
     names = [name for name in PHASES_OF if any(name in set(mine.implementation) for mine in shown.values())]
     figure = limit.by_phase(shown, names)
-    for axes in figure.axes:
-        axes.set_xlim(0, 160 if len(shown) > 1 else 130)
+    plt.setp(figure.axes, xlim=(0, 160 if len(shown) > 1 else 130))
     return figure
 
 

@@ -9,7 +9,7 @@ from scipy.stats import gmean
 
 from analysis.accuracy import page as accuracy
 from analysis.core import timing
-from analysis.core.text import number, span
+from analysis.core.text import number, percent, span
 from analysis.engines.equal_error import compared
 from analysis.engines.page import medians
 from analysis.extremes import page as extremes
@@ -56,10 +56,6 @@ def count(rows, among, table):
 
 def _records(rows):
     return tuple(dict.fromkeys(name for one in rows.record for name in str(one).split()))
-
-
-def percent(value, digits=0):
-    return "–" if value is None or math.isnan(value) else f"{100 * value:.{digits}f} %"
 
 
 def listed(names):
@@ -277,7 +273,7 @@ def _carried(known, others):
 
 def _default(rows):
     least = "at least " if rows.smaller.iloc[0] > 0 else ""
-    return f"{rows.rule.iloc[0]}: {least}{number(rows['mean'].iloc[0])} times on average, {number(rows.worst.iloc[0])} at worst"
+    return f"“{rows.rule.iloc[0]}” ({least}{number(rows['mean'].iloc[0])} times on average, {number(rows.worst.iloc[0])} at worst)"
 
 
 def _error(known):

@@ -18,7 +18,7 @@ from analysis.map import ledger, summary
 from study.tools.merge import machine
 from study.tools.paper.numbers import GAINED, led, losses, real, real_mechanisms
 
-ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
+ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "--": r"-{}-", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
            "≤": r"\(\le\)", "→": r"\(\to\)", "≈": r"\(\approx\)", "α": r"\(\alpha\)", "Δ": r"\(\Delta\)", "Φ": r"\(\Phi\)", "λ": r"\(\lambda\)", "·": r"\(\cdot\)",
            "⁻": r"\textsuperscript{\(-\)}"} | {raised: rf"\textsuperscript{{{digit}}}" for digit, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
@@ -26,7 +26,8 @@ ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r
 
 def tex(text):
     """A text as LaTeX prints it."""
-    return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+    escaped = re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+    return re.sub(r"(?<![\w-])-(?=\d)", r"\(-\)", re.sub("`([^`]+)`", r"\\texttt{\1}", escaped))  # a command; a minus
 
 
 RANKED = 12     # libraries of the table of ranks
