@@ -39,13 +39,14 @@ def cells_of(rows, scene, verdicts):
 
 
 def looked(cell):
-    """What a first look says of who was not timed further."""
+    """What a first look says of who was not timed further: no time of those whom the gate did not see there."""
     if cell["status"] != "ok":
         return cell
-    cell = {key: cell[key] for key in ("implementation", "record", "verdict", "step_us", "passes", "pass_us")}
-    if cell["verdict"] == "dropped":
-        return cell | {"status": "dropped", "reason": "the budget was spent"}
-    return cell | {"status": "slower", "reason": "in a first look far slower than the fastest library"}
+    known = {key: cell[key] for key in ("implementation", "record", "verdict")}
+    if cell["verdict"] != "agrees":
+        return known | {"status": "dropped", "reason": "looked at, but the budget was spent before the gate"}
+    return known | {key: cell[key] for key in ("step_us", "passes", "pass_us")} | {
+        "status": "slower", "reason": "in a first look far slower than the fastest library"}
 
 
 def _cell(rows, verdict):

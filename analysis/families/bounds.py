@@ -9,7 +9,9 @@ AHEAD = 1.5     # times faster than the fastest library: compiled code, up to ..
 LARGE = 2000    # ... so many variables
 BEHIND = 1.1    # times as slow at most: above
 COMPILED = "compiled_"
-HYBRID, DENSE, SUPERNODAL = "hybrid_dense", "eigen_dense/llt", "csc_cholmod/supernodal"
+KNOWN = {"n": "variables", "per_column": "non-zeros of L per column", "widest": "non-zeros of its fullest column", "block": "columns per supernode",
+         "dense": "operations, in % of those of a full L", "height": "columns that wait for each other"}  # that might decide where it is behind
+HYBRID, PANELS, DENSE, SUPERNODAL = "hybrid_dense", "hybrid_dense/panels", "eigen_dense/llt", "csc_cholmod/supernodal"
 FILLED = "four-bar:49,fill=0.50"  # n = 100
 FASTER = 1.9    # times, hybrid_dense there than ...
 SMALL, SLOWER = 22, 1.1  # up to so many variables at most so many times as slow as eigen_dense
@@ -18,7 +20,7 @@ SMALL, SLOWER = 22, 1.1  # up to so many variables at most so many times as slow
 def bounds(tables):
     """[(what, asked, found, whether it holds; None: open)]"""
     scenes = tables["scenes"]
-    return [*_rule(tables["held"]), *_by_hand(tables["by_hand"]), *_agreement(scenes, tables["mechanisms"]), *_hybrid(scenes), *_compiled(scenes)]
+    return [*_rule(tables["held"]), *_by_hand(tables["by_hand"]), *_agreement(scenes, tables["mechanisms"]), *_hybrid(scenes), *_compiled(tables)]
 
 
 def _rule(held):
@@ -41,24 +43,22 @@ def _losses(rule, found, count):
 
 
 def _agreement(scenes, mechanisms):
-    """Of who was not asked, as the budget was spent, nothing is known."""
+    """Who was not asked, as the budget was spent, has no time."""
     asked = ~scenes.verdict.isin(["", "dropped"])
     wrong = scenes[asked & (scenes.verdict != "agrees")]
-    unasked = int((~asked & (scenes.step_us.notna() | scenes.look_us.notna())).sum())
     where = ", ".join(f"{row.implementation} on {row.scene} ({row.scheme})" for row in wrong.itertuples())
     warned = int(((wrong.scheme == "penalty") & wrong.scene.isin(mechanisms.scene[mechanisms.saddle == 1])).sum())
     found = (f"{asked.sum() - len(wrong)} of {asked.sum()} checks" + (f"; not: {where}" if where else "")
-             + (f"; in {warned} of these `mbs describe` takes the other form" if warned else "")
-             + (f"; {unasked} that have a time were not asked" if unasked else ""))
+             + (f"; in {warned} of these `mbs describe` takes the other form" if warned else ""))
     return [("who has a time agrees with the reference, in both forms", "always", found,
-             False if len(wrong) else None if unasked or not asked.any() else True)]
+             False if len(wrong) else bool(asked.any()) or None)]
 
 
 def _hybrid(scenes):
     """The fastest variant of hybrid_dense, in the paper's form; on FILLED also the fastest with a library's factorization."""
     found = {scene: rows.set_index("implementation") for scene, rows in scenes[scenes.scheme == "penalty"].groupby("scene", sort=False)}
     for other in (DENSE, SUPERNODAL):
-        for without, what in (("", HYBRID), (f"{HYBRID}/panels", f"{HYBRID} with a library's factorization")):
+        for without, what in (("", HYBRID), (PANELS, f"{HYBRID} with a library's factorization")):
             ratio, name = _over(found[FILLED], other, without) if FILLED in found else (None, "")
             yield (f"{what} on {FILLED}, beside {other}", f"at least {FASTER:g} times as fast",
                    *((f"{ratio:.2f} times ({name})", ratio >= FASTER) if ratio else ("not measured", None)))
@@ -78,17 +78,43 @@ def _over(rows, other, without=""):
     return None, ""
 
 
-def _compiled(scenes):
-    """The fastest compiled code of each mechanism and form."""
-    own = scenes[scenes.implementation.str.startswith(COMPILED) & (scenes.status == "ok") & scenes.to_rival.notna()]
-    fastest = own.sort_values("to_rival").drop_duplicates(["scene", "scheme"])
-    small, large = fastest[fastest.variables <= LARGE], fastest[fastest.variables > LARGE]
-    for rows, what, asked, bad in ((small, f"compiled code, up to n = {LARGE}", f"at least {AHEAD:g} times as fast as the fastest library",
-                                    small[1 / small.to_rival < AHEAD]),
-                                   (large, f"compiled code, above n = {LARGE}", f"at most {BEHIND:g} times as slow", large[large.to_rival > BEHIND])):
-        if rows.empty:
-            yield what, asked, "none was timed", None
-            continue
-        least = f"{len(rows) - len(bad)} of {len(rows)} mechanisms and forms; {1 / rows.to_rival.max():.2f} to {1 / rows.to_rival.min():.2f} times as fast"
-        where = ", ".join(f"{row.scene}{'' if row.scheme == 'penalty' else ' (' + row.scheme + ')'} {1 / row.to_rival:.2f}" for row in bad.itertuples())
-        yield what, asked, least + (f"; not on: {where}" if where else ""), bad.empty
+def compiled(tables):
+    """The fastest compiled code of each mechanism and form. gain: over the fastest library; over_all: over own code on a dense matrix too, where that is
+    faster (rival: who it is then); behind, behind_all: of what is asked; KNOWN numbers of the mechanism."""
+    scenes, winners, keys = tables["scenes"], tables["winners"], ["scene", "scheme"]
+    timed = scenes[(scenes.status == "ok") & scenes.to_rival.notna()].sort_values("to_rival")
+    rows = timed[timed.implementation.str.startswith(COMPILED)].drop_duplicates(keys).set_index(keys)
+    panels = timed[timed.implementation == PANELS].set_index(keys).to_rival.reindex(rows.index).fillna(1.0).clip(upper=1.0)
+    rival = winners[winners.layer == "libraries"].set_index(keys).winner.reindex(rows.index).where(panels == 1.0, PANELS)
+    rows = rows.assign(gain=1 / rows.to_rival, over_all=panels / rows.to_rival, rival=rival)
+    asked = (rows.variables <= LARGE).map({True: AHEAD, False: 1 / BEHIND})
+    return rows.assign(behind=rows.gain < asked, behind_all=rows.over_all < asked).reset_index().join(
+        tables["mechanisms"].set_index("scene")[list(KNOWN)], on="scene")
+
+
+def decides(rows, behind):
+    """Of KNOWN numbers, the one of which a limit tells best where compiled code is behind, as the column `behind` has it: (its meaning, relation, limit,
+    behind on this side, all on this side, behind, all); None where it is behind everywhere or nowhere."""
+    rows, found = rows.dropna(subset=list(KNOWN)), []
+    bad = rows[behind].to_numpy(bool)
+    if bad.all() or not bad.any():
+        return None
+    for name, meaning in KNOWN.items():
+        for limit in rows[name].unique():
+            for relation, there in (("at least", rows[name] >= limit), ("at most", rows[name] <= limit)):
+                there = there.to_numpy()
+                found.append((there[bad].mean() - there[~bad].mean(), meaning, relation, float(limit), int(bad[there].sum()), int(there.sum())))
+    return (*max(found)[1:], int(bad.sum()), len(rows))
+
+
+def _compiled(tables):
+    rows = compiled(tables)
+    for where, what, asked in ((rows.variables <= LARGE, f"up to n = {LARGE}", f"at least {AHEAD:g} times as fast as"),
+                               (rows.variables > LARGE, f"above n = {LARGE}", f"at most {BEHIND:g} times as slow as")):
+        for rival, gain, behind in (("the fastest library", "gain", "behind"), (f"that and {PANELS}", "over_all", "behind_all")):
+            here, bad = rows[where], rows[where & rows[behind]].sort_values(gain)
+            found = f"{len(here) - len(bad)} of {len(here)} mechanisms and forms; {here[gain].min():.2f} to {here[gain].max():.2f} times as fast"
+            if len(bad):
+                named = (f"{one.scene}{'' if one.scheme == 'penalty' else ' (' + one.scheme + ')'} {one.gain:.2f}" for one in bad.itertuples())
+                found += f"; not on: {', '.join(named)}" if behind == "behind" else f"; not on {len(bad)}"
+            yield f"compiled code, {what}", f"{asked} {rival}", *((found, bad.empty) if len(here) else ("none was timed", None))

@@ -5,7 +5,7 @@ import pandas
 
 from analysis.core.text import answers as said, number
 from analysis.families import by_hand
-from analysis.families.bounds import bounds
+from analysis.families.bounds import KNOWN, bounds, compiled, decides
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, missed, summary
 from analysis.families.times import features_of
@@ -23,8 +23,11 @@ def context(tables, view):
               for name, rows in winners.groupby("scene", sort=False)]
     times = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()]
     lost = scenes[~scenes.status.isin(["ok", "slower"])].assign(where=lambda rows: rows.scene + ", " + rows.scheme)
+    own = compiled(tables)
     held, decided = tables["held"], winners[(winners.layer == "libraries") & winners.decided.fillna(False).astype(bool)]
-    return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables),
+    return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables), "known": KNOWN,
+            "behind": own[own.behind_all].sort_values("over_all").to_dict("records"), "decides": [(rival, found) for rival, which in (("the fastest library", "behind"), ("the fastest library or hybrid_dense/panels", "behind_all"))
+                                                                                if (found := decides(own, which))],
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, [(name, list(mine["where"])) for name, mine in rows.groupby("implementation", sort=False)])
                      for what, rows in lost.groupby(["status", "reason"], sort=False)],

@@ -25,7 +25,7 @@ def build(records, view):
                      "variables": about[scene].output.get("variables") if scene in about else None}
             rival = rival_of(timed, cells, registry)
             scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
-                       | {"look_us": looks.get(name, {}).get("step_us")}
+                       | {"look_us": looks[name].get("step_us") if name in looks and looks[name]["verdict"] == "agrees" else None}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
         twins += [{"scheme": scheme} | row for row in controls_in(by_role.get(scheme, []))]

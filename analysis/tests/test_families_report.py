@@ -39,7 +39,7 @@ def measured(scene, number, **times):
 def small():
     return made([described(scene) for scene in SCENES],
                 [bench("penalty-look", scene, 1, one_a=2.0, one_b=9.0, two_c="unsupported: no", own_x=1.0) for scene in SCENES],
-                asked(SCENES[0], one_a="agrees", own_x="agrees"), asked(SCENES[1], one_a="agrees", one_b="agrees", own_x="disagrees"),
+                asked(SCENES[0], one_a="agrees", one_b="agrees", own_x="agrees"), asked(SCENES[1], one_a="agrees", one_b="agrees", own_x="disagrees"),
                 [measured(SCENES[0], number, one_a=2.0, own_x=1.0) for number in (1, 2, 3)],
                 [measured(SCENES[1], number, one_a=2.0 + 0.001 * number, one_b=2.01, own_x=1.0) for number in (1, 2, 3)])
 
@@ -56,8 +56,9 @@ def test_who_is_slow_and_agrees_keeps_the_time_of_the_look_and_who_disagrees_has
     rows = made(described(SCENES[0]), looks, said, times)["scenes"].set_index("implementation")
     assert (rows.status["one/b"], rows.verdict["one/b"], rows.look_us["one/b"]) == ("slower", "agrees", 9.0)
     assert (rows.status["two/c"], rows.verdict["two/c"]) == ("disagrees", "disagrees") and rows.isna().to_rival["two/c"]
-    dropped = made(described(SCENES[0]), looks, asked(SCENES[0], one_a="dropped"))["scenes"].set_index("implementation")
-    assert dropped.status["one/a"] == "dropped"
+    unasked = made(described(SCENES[0]), looks, asked(SCENES[0], one_a="dropped"))["scenes"].set_index("implementation")
+    assert set(unasked.status[["one/a", "one/b"]]) == {"dropped"} and unasked.reason["one/b"].endswith("before the gate")
+    assert unasked.loc[["one/a", "one/b"], ["step_us", "look_us"]].isna().all(axis=None)  # nobody saw their motion there
 
 
 def test_libraries_and_all_have_their_winners_among_those_that_agree():
@@ -252,7 +253,7 @@ def without(tables, rows, **changed):
 def test_a_loss_is_of_the_look_where_there_are_no_other_times():
     tables = mechanisms(lambda family, name: 3.0 if (family, name) == ("tree", "one/a") else 1.0)
     odd = (tables["scenes"].family == "tree") & (tables["scenes"].implementation == "one/a")
-    tables["scenes"].loc[odd, ["status", "verdict"]] = "slower", ""
+    tables["scenes"].loc[odd, "status"] = "slower"
     looked = rule.judged(tables, REGISTRY)["held"].set_index("scene")
     assert set(looked.known_by[looked.family == "tree"]) == {"look"} and set(looked.known_by[looked.family != "tree"]) == {"turns"}
     assert looked.loss["tree:10"] > 0.2 and looked.chosen["tree:10"] == "one/a"
@@ -283,13 +284,27 @@ def test_bounds_say_what_does_not_hold_and_where():
     scenes = found["scenes"].replace({"implementation": {"own/x": "compiled_own/x"}})
     scenes.loc[scenes.scene == "grid:10", "verdict"] = "disagrees"
     scenes.loc[(scenes.scene == "beam:100") & (scenes.implementation == "compiled_own/x"), "to_rival"] = 0.8
-    rows = {what: (text, holds) for what, _, text, holds in bounds.bounds(found | {"scenes": scenes})}
+    rows = {what: (text, holds) for what, _, text, holds in reversed(bounds.bounds(found | {"scenes": scenes}))}  # the first of those of one name
     assert rows["worst loss of the rule by hand, on families left out"] == ("0.0 %", True)
     assert rows["they are inside the range that is given"] == ("100 % of 18", True)
     assert rows["who has a time agrees with the reference, in both forms"][1] is False
     text, holds = rows["compiled code, up to n = 2000"]
     assert holds is False and "not on: beam:100 1.25" in text and "17 of 18" in text
     assert rows["compiled code, above n = 2000"] == ("none was timed", None)
+
+
+def test_own_code_on_a_dense_matrix_is_a_rival_of_its_own_and_what_decides_is_said():
+    tables = mechanisms()
+    scenes = tables["scenes"].replace({"implementation": {"own/x": "compiled_own/x"}})
+    wide = scenes.scene.isin(["block:10", "block:100", "shell:10"]) & (scenes.implementation == "compiled_own/x")
+    found = tables | {"scenes": pandas.concat([scenes, scenes[wide].assign(implementation=bounds.PANELS, to_rival=0.6)])}
+    asked = [(holds, text) for _, what, text, holds in bounds._compiled(found) if what.startswith("at least")]
+    assert [holds for holds, _ in asked] == [True, False] and "15 of 18" in asked[1][1]
+    rows = bounds.compiled(found).set_index("scene")
+    assert (rows.rival["shell:10"], rows.rival["beam:10"]) == (bounds.PANELS, "one/b") and rows.over_all["shell:10"] == pytest.approx(1.2)
+    assert bounds.decides(bounds.compiled(found), "behind") is None
+    meaning, relation, limit, there, every, count, every_one = bounds.decides(bounds.compiled(found), "behind_all")
+    assert (meaning, relation, limit, there, every, count, every_one) == ("non-zeros of L per column", "at least", 40.0, 3, 6, 3, 18)
 
 
 def test_limits_by_hand_are_found_without_the_counts_of_who_is_left_out(monkeypatch):
@@ -308,13 +323,13 @@ def test_the_rule_by_hand_is_held_to_the_same_bounds():
     assert [row[3] for row in bounds._by_hand(cases.assign(unknown=1))] == [None, None]
 
 
-def test_who_was_not_asked_leaves_agreement_open():
+def test_who_was_not_asked_is_in_no_check():
     tables = mechanisms()
     scenes, known = tables["scenes"], tables["mechanisms"]
     assert bounds._agreement(scenes, known)[0][3] is True
-    scenes.loc[scenes.scene == "grid:10", ["verdict", "status"]] = "", "slower"
-    _, _, text, holds = bounds._agreement(scenes, known)[0]
-    assert holds is None and text == "51 of 51 checks; 3 that have a time were not asked"
+    scenes.loc[scenes.scene == "grid:10", ["verdict", "status"]] = "", "dropped"
+    assert bounds._agreement(scenes, known)[0][2:] == ("51 of 51 checks", True)
+    assert bounds._agreement(scenes.assign(verdict=""), known)[0][3] is None
     scenes.loc[scenes.scene == "beam:10", "verdict"] = "disagrees"
     _, _, text, holds = bounds._agreement(scenes, known)[0]
     assert holds is False and "other form" not in text
