@@ -126,11 +126,11 @@ SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates)
   return pattern.matrix();
 }
 
-Coordinates numbered_by(const Model& model,
-                        std::vector<int> (*order)(const SparseMatrix& pattern)) {
+Coordinates numbered_by(const Model& model, std::vector<int> (*order)(const SparseMatrix&, Tuning),
+                        Tuning tuning) {
   std::vector<int> identity(model.variables());
   std::iota(identity.begin(), identity.end(), 0);
-  return {model, order(tangent_pattern(model, {model, std::move(identity)}))};
+  return {model, order(tangent_pattern(model, {model, std::move(identity)}), tuning)};
 }
 
 }  // namespace mbs::eigen_sparse

@@ -78,8 +78,11 @@ SparseMatrix stiffness_pattern(const Model& model, const Coordinates& coordinate
 /// triangles.
 SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates);
 
+enum class Tuning;  // solver.hpp
+
 /// The numbering of a model by `order`, which tells where each unknown of a tangent's pattern is
 /// eliminated.
-Coordinates numbered_by(const Model& model, std::vector<int> (*order)(const SparseMatrix& pattern));
+Coordinates numbered_by(const Model& model, std::vector<int> (*order)(const SparseMatrix&, Tuning),
+                        Tuning tuning);
 
 }  // namespace mbs::eigen_sparse

@@ -61,30 +61,39 @@ constexpr Serves kServes{.terms = kTerms,
                          .projections_every = true,
                          .mixed_precision = true};
 
-/// The step as it is where nothing else is asked for, in the penalty form.
-template <class Solver>
-std::unique_ptr<Simulation> create_default(const Model& model, const StepSettings& settings) {
-  return std::make_unique<SparseSimulation<PenaltyForm<Solver>>>(model, settings);
+/// With a setting that was tried; "the step" alone.
+template <class Solver, Tuning kTuning>
+std::unique_ptr<Simulation> create_tuned(const Model& model, const StepSettings& settings) {
+  if (settings.scheme == Scheme::saddle_point) {
+    return std::make_unique<SparseSimulation<SaddleForm<Solver>>>(model, settings, kTuning);
+  }
+  return std::make_unique<SparseSimulation<PenaltyForm<Solver>>>(model, settings, kTuning);
 }
 
-/// `Solver` with a setting that was tried for `base`.
-template <class Solver>
-Variant tried(const char* name, const char* description, const Variant& base) {
+Variant tried(const char* name, const char* description, decltype(Variant::create) create,
+              const Variant& base) {
   return {.name = name,
           .description = description,
-          .create = create_default<Solver>,
+          .create = create,
           .allocates = base.allocates,
           .unsymmetric = base.unsymmetric,
-          .serves = {.terms = kTerms},
+          .serves = {.terms = kTerms, .saddle_point = true},
           .tried_for = base.name};
 }
+
+#ifdef MBS_PARDISO
+std::unique_ptr<Simulation> create_pardiso(const Model& model, const StepSettings& settings) {
+  return std::make_unique<SparseSimulation<PenaltyForm<PardisoSolver>>>(model, settings);
+}
+#endif
 
 }  // namespace
 
 Implementation implementation() {
   const Variant superlu{
       .name = "superlu",
-      .description = "supernodal LU with diagonal pivots; ordering, tree and storage reused",
+      .description =
+          "supernodal LU with diagonal pivots; MMD, AMD or model's order; storage reused",
       .create = create<SuperluSolver>,
       .allocates = "SuperLU's dgstrf and sp_dtrsv allocate their work space in every call",
       .unsymmetric = true,
@@ -104,18 +113,24 @@ Implementation implementation() {
 #ifdef MBS_PARDISO
                    {.name = "pardiso",
                     .description = "MKL's PARDISO, LL^T, in its own order (ISSL)",
-                    .create = create_default<PardisoSolver>,
+                    .create = create_pardiso,
                     .allocates = "Eigen copies the matrix and right-hand sides for PARDISO",
                     .serves = {.terms = kTerms}},
 #endif
-                   tried<TunedSuperlu<double, Tuning::amd>>("superlu_amd", "AMD's order", superlu),
-                   tried<TunedSuperlu<double, Tuning::colamd>>(
-                       "superlu_colamd", "order of COLAMD, the library's default", superlu),
-                   tried<TunedSuperlu<double, Tuning::panels>>(
-                       "superlu_panels", "panels and relaxed supernodes of the library's sizes",
-                       superlu),
-                   tried<TunedSimplicial<double, Tuning::amd>>("ldlt_amd",
-                                                               "in AMD's order as it is", ldlt)},
+                   tried("superlu_amd", "always in AMD's order",
+                         create_tuned<SuperluSolver<double>, Tuning::amd>, superlu),
+                   tried("superlu_mmd", "always in that of minimum degree on T + T^T",
+                         create_tuned<SuperluSolver<double>, Tuning::mmd>, superlu),
+                   tried("superlu_colamd", "order of COLAMD, the library's default",
+                         create_tuned<SuperluSolver<double>, Tuning::colamd>, superlu),
+                   tried("superlu_metis", "order of METIS",
+                         create_tuned<SuperluSolver<double>, Tuning::metis>, superlu),
+                   tried("superlu_trees", "the order of ldlt, lowest trees",
+                         create_tuned<SuperluSolver<double>, Tuning::trees>, superlu),
+                   tried("superlu_panels", "panels and relaxed supernodes of the library's sizes",
+                         create_tuned<SuperluSolver<double>, Tuning::panels>, superlu),
+                   tried("ldlt_amd", "in AMD's order as it is",
+                         create_tuned<SimplicialSolver<double>, Tuning::amd>, ldlt)},
       .role = Role::paper};
 }
 

@@ -10,7 +10,7 @@
 
 namespace mbs::eigen_sparse {
 
-/// The same contract as TunedSimplicial, for positive definite matrices. PARDISO orders by itself
+/// The same contract as SimplicialSolver, for positive definite matrices. PARDISO orders by itself
 /// and keeps that order, so the unknowns stay in the model's. Eigen copies the matrix by rows in
 /// every factorization, and the right-hand side of a solve in place.
 class PardisoSolver {
@@ -18,14 +18,14 @@ class PardisoSolver {
   using Values = SparseMatrix;
   using Side = Vector;
   static constexpr Triangle kTriangle = Triangle::upper;
-  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern) {
+  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern, Tuning) {
     std::vector<int> identity(pattern.cols());
     std::iota(identity.begin(), identity.end(), 0);
     return identity;
   }
 
   /// Symbolic analysis. `matrix` outlives the solver; its values may change, its pattern not.
-  PardisoSolver(const Values& matrix, Definiteness) : matrix_(matrix) {
+  PardisoSolver(const Values& matrix, Definiteness, Tuning) : matrix_(matrix) {
     factors_.pardisoParameterArray()[7] = 0;  // no steps of refinement: nobody else does any
     factors_.analyzePattern(matrix_);
   }

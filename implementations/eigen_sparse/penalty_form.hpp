@@ -15,13 +15,13 @@ class PenaltyForm {
   using Solver = Solver_;
 
   /// `mechanism` outlives the form and gets its forces here.
-  PenaltyForm(const Model& model, const StepSettings& settings, Mechanism& mechanism)
+  PenaltyForm(const Model& model, const StepSettings& settings, Mechanism& mechanism, Tuning tuning)
       : quarter_(0.25 * settings.step * settings.step),
         penalty_(settings.penalty),
         mechanism_(mechanism),
         tangent_(model, mechanism.coordinates, mechanism.constraints, Solver::kTriangle,
                  quarter_ * penalty_),
-        solver_(tangent_.matrix(), Definiteness::positive),
+        solver_(tangent_.matrix(), Definiteness::positive, tuning),
         delta_(model.variables()),
         multiplier_(Vector::Zero(model.constraints())) {
     mechanism.add_forces(model, layout(), settings.step);

@@ -10,18 +10,21 @@ template <template <class> class Solver>
 class RoundedSolver {
  public:
   static constexpr Triangle kTriangle = Solver<float>::kTriangle;
-  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern) {
-    return Solver<float>::elimination_order(pattern);
+  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern,
+                                                          Tuning tuning) {
+    return Solver<float>::elimination_order(pattern, tuning);
   }
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
-                                                         const Followers& followers) {
-    return Solver<float>::equivalent_order(pattern, followers);
+  [[nodiscard]] static std::vector<int> saddle_order(const SparseMatrix& saddle,
+                                                     const Followers& followers, const Model& model,
+                                                     const Coordinates& coordinates,
+                                                     Tuning tuning) {
+    return Solver<float>::saddle_order(saddle, followers, model, coordinates, tuning);
   }
 
-  RoundedSolver(const SparseMatrix& matrix, Definiteness definiteness)
+  RoundedSolver(const SparseMatrix& matrix, Definiteness definiteness, Tuning tuning)
       : matrix_(matrix),
         rounded_(matrix.cast<float>()),
-        solver_(rounded_, definiteness),
+        solver_(rounded_, definiteness, tuning),
         x_(matrix.cols()) {}
 
   [[nodiscard]] bool factorize() {

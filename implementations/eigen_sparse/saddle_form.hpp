@@ -12,11 +12,11 @@ class SaddleForm {
  public:
   using Solver = Solver_;
 
-  SaddleForm(const Model& model, const StepSettings& settings, Mechanism& mechanism)
+  SaddleForm(const Model& model, const StepSettings& settings, Mechanism& mechanism, Tuning tuning)
       : quarter_(0.25 * settings.step * settings.step),
         epsilon_(1.0 / (quarter_ * settings.penalty)),
         mechanism_(mechanism),
-        equations_(model, epsilon_, mechanism, stiffness_of(model)),
+        equations_(model, epsilon_, mechanism, stiffness_of(model), tuning),
         delta_(model.variables()),
         multiplier_(model.constraints()),
         nu_(model.constraints()) {

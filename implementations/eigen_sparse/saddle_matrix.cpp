@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "saddle_order.hpp"
-
 namespace mbs::eigen_sparse {
 namespace {
 
@@ -100,15 +98,6 @@ Followers followers_of(const RowSparseMatrix& jacobian, const Owned& owned) {
   return followers;
 }
 
-/// `followers` where `place` puts them.
-Followers placed(const Followers& followers, std::span<const int> place) {
-  Followers result(followers.size());
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    for (const int follower : followers[i]) result[place[i]].push_back(place[follower]);
-  }
-  return result;
-}
-
 /// Eqs. (12), (14) with `upper_left` (n x n, both triangles) and Phi_q as it is; both triangles.
 SparseMatrix assembled(const SparseMatrix& upper_left, const RowSparseMatrix& jacobian,
                        double epsilon, std::span<const int> place) {
@@ -137,7 +126,7 @@ SparseMatrix assembled(const SparseMatrix& upper_left, const RowSparseMatrix& ja
 
 SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
                            const Constraints& constraints, Triangle triangle, double epsilon,
-                           Stiffness stiffness, Reorder reorder)
+                           Stiffness stiffness, SaddleOrder order, Tuning tuning)
     : triangle_(triangle),
       variables_(model.variables()),
       place_(model.variables() + model.constraints()) {
@@ -148,11 +137,8 @@ SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
   const Followers followers =
       followers_of(jacobian, owned_unknowns(model, coordinates, jacobian, constraints.quadratic()));
   std::iota(place_.begin(), place_.end(), 0);
-  place_ = saddle_order(assembled(upper_left, jacobian, epsilon, place_), model.variables(),
-                        followers, triangle);
-  const std::vector<int> order =
-      reorder(assembled(upper_left, jacobian, epsilon, place_), placed(followers, place_));
-  for (int& place : place_) place = order[place];
+  place_ = order(assembled(upper_left, jacobian, epsilon, place_), followers, model, coordinates,
+                 tuning);
   matrix_ = assembled(upper_left, jacobian, epsilon, place_);
   if (triangle == Triangle::upper) matrix_ = SparseMatrix(matrix_.triangularView<Eigen::Upper>());
   if (stiffness == Stiffness::added) {

@@ -21,12 +21,13 @@ enum class Stiffness { none, added };
 /// 0, 1, multiplier, 2: unknowns() is 0, 1, 3 and multipliers() is 2.
 class SaddleMatrix {
  public:
-  /// An order equivalent to the present one, as Solver::equivalent_order() gives it.
-  using Reorder = std::vector<int> (*)(const SparseMatrix& pattern, const Followers& followers);
+  /// Solver::saddle_order().
+  using SaddleOrder = decltype(SimplicialSolver<double>::saddle_order)*;
 
   /// The values start with Phi_q of linear constraints alone.
   SaddleMatrix(const Model& model, const Coordinates& coordinates, const Constraints& constraints,
-               Triangle triangle, double epsilon, Stiffness stiffness, Reorder reorder);
+               Triangle triangle, double epsilon, Stiffness stiffness, SaddleOrder order,
+               Tuning tuning);
 
   /// Takes Phi_q as it is in `jacobian`; C and K, if there are any, have to be added again.
   void refresh(const RowSparseMatrix& jacobian);

@@ -1,9 +1,10 @@
-// Minimum degree on unknowns and multipliers, and the choice between that and the unknowns' order.
+// Minimum degree on unknowns and multipliers, multipliers among unknowns, and what both take.
 #include "saddle_order.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <numeric>
 #include <set>
 
 namespace mbs::eigen_sparse {
@@ -80,27 +81,29 @@ class MinimumDegree {
   double operations_ = 0.0;
 };
 
-/// Where vertices are eliminated if unknowns keep their order and multipliers follow at once.
-std::vector<int> interleaved(int unknowns, const Followers& followers) {
-  std::vector<int> awaited(followers.size()), position(followers.size());
+}  // namespace
+
+std::vector<int> interleaved(const std::vector<int>& position, const Followers& followers) {
+  const std::size_t unknowns = position.size();
+  std::vector<int> awaited(followers.size()), result(followers.size()), order(unknowns);
+  for (std::size_t v = 0; v < unknowns; ++v) order[position[v]] = static_cast<int>(v);
   for (const std::vector<int>& list : followers) {
     for (const int follower : list) ++awaited[follower];
   }
   int next = 0;
   for (std::size_t v = unknowns; v < followers.size(); ++v) {
-    if (awaited[v] == 0) position[v] = next++;
+    if (awaited[v] == 0) result[v] = next++;
   }
-  for (int v = 0; v < unknowns; ++v) {
-    position[v] = next++;
+  for (const int v : order) {
+    result[v] = next++;
     for (const int u : followers[v]) {
-      if (--awaited[u] == 0) position[u] = next++;
+      if (--awaited[u] == 0) result[u] = next++;
     }
   }
-  return position;
+  return result;
 }
 
-/// Operations in the order of `position`: each row of L is the union of paths in the elimination
-/// tree.
+/// Each row of L is the union of paths in the elimination tree.
 double operations(const SparseMatrix& pattern, const std::vector<int>& position) {
   std::vector<int> vertex(position.size()), parent(position.size(), -1), seen(position.size(), -1);
   std::vector<int> degree(position.size());
@@ -120,16 +123,32 @@ double operations(const SparseMatrix& pattern, const std::vector<int>& position)
   return sum;
 }
 
-}  // namespace
-
-std::vector<int> saddle_order(const SparseMatrix& pattern, int unknowns, const Followers& followers,
-                              Triangle triangle) {
-  std::vector<int> position = interleaved(unknowns, followers);
-  if (triangle == Triangle::full) return position;
-  const double limit = operations(pattern, position);
-  MinimumDegree by_degree(pattern, followers);
+std::vector<int> least_work(const SparseMatrix& saddle, const std::vector<int>& position,
+                            const Followers& followers) {
+  std::vector<int> result = interleaved(position, followers);
+  const double limit = operations(saddle, result);
+  MinimumDegree by_degree(saddle, followers);
   by_degree.run(limit);
-  return by_degree.operations() < limit ? by_degree.position() : position;
+  return by_degree.operations() < limit ? by_degree.position() : result;
+}
+
+std::vector<int> in_place(int size) {
+  std::vector<int> identity(size);
+  std::iota(identity.begin(), identity.end(), 0);
+  return identity;
+}
+
+SparseMatrix dominant(const SparseMatrix& pattern, const std::vector<int>& position) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int col = 0; col < pattern.cols(); ++col) {
+    for (SparseMatrix::InnerIterator it(pattern, col); it; ++it) {
+      const double value = it.row() == col ? static_cast<double>(pattern.cols()) : 1.0;
+      entries.emplace_back(position[it.row()], position[col], value);
+    }
+  }
+  SparseMatrix matrix(pattern.rows(), pattern.cols());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 }  // namespace mbs::eigen_sparse

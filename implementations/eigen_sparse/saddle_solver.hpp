@@ -11,10 +11,11 @@ namespace mbs::eigen_sparse {
 template <class Solver>
 class SaddleSolver {
  public:
-  SaddleSolver(const Model& model, double epsilon, const Mechanism& mechanism, Stiffness stiffness)
+  SaddleSolver(const Model& model, double epsilon, const Mechanism& mechanism, Stiffness stiffness,
+               Tuning tuning)
       : matrix_(model, mechanism.coordinates, mechanism.constraints, Solver::kTriangle, epsilon,
-                stiffness, Solver::equivalent_order),
-        solver_(matrix_.matrix(), Definiteness::quasi),
+                stiffness, Solver::saddle_order, tuning),
+        solver_(matrix_.matrix(), Definiteness::quasi, tuning),
         packed_(matrix_.matrix().cols()) {}
 
   /// The matrix, for those who refresh it.

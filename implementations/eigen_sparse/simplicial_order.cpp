@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "solver.hpp"
+#include "saddle_order.hpp"
 
 namespace mbs::eigen_sparse {
 namespace {
@@ -81,47 +81,54 @@ std::vector<int> positions_by_rounds(const SparseMatrix& L, const Followers& fol
   return graph.positions();
 }
 
-/// A matrix of this pattern that has factors.
-SparseMatrix dominant(const SparseMatrix& pattern) {
-  SparseMatrix matrix = pattern;
-  matrix.coeffs().setOnes();
-  matrix.diagonal().setConstant(static_cast<double>(pattern.cols()));
-  return matrix;
+/// `followers` where `place` puts them.
+Followers placed(const Followers& followers, const std::vector<int>& place) {
+  Followers result(followers.size());
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    for (const int follower : followers[i]) result[place[i]].push_back(place[follower]);
+  }
+  return result;
 }
 
 }  // namespace
 
-template <class Scalar, Tuning kTuning>
-std::vector<int> TunedSimplicial<Scalar, kTuning>::elimination_order(const SparseMatrix& pattern) {
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(dominant(pattern));  // AMD
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::elimination_order(const SparseMatrix& pattern,
+                                                             Tuning tuning) {
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(
+      dominant(pattern, in_place(static_cast<int>(pattern.cols()))));  // AMD
   const auto& amd = factors.permutationP().indices();
-  if (kTuning == Tuning::amd) return {amd.begin(), amd.end()};
-  const std::vector<int> positions =
+  std::vector<int> position(amd.begin(), amd.end());
+  if (tuning == Tuning::amd) return position;
+  const std::vector<int> rounds =
       positions_by_rounds(factors.matrixL().nestedExpression(), Followers(pattern.cols()));
-  std::vector<int> position(pattern.cols());
-  for (int i = 0; i < pattern.cols(); ++i) position[i] = positions[amd[i]];
+  for (int& place : position) place = rounds[place];
   return position;
 }
 
-template <class Scalar, Tuning kTuning>
-std::vector<int> TunedSimplicial<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern,
-                                                                    const Followers& followers) {
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::saddle_order(const SparseMatrix& saddle,
+                                                        const Followers& followers, const Model&,
+                                                        const Coordinates& coordinates,
+                                                        Tuning tuning) {
+  std::vector<int> position = in_place(coordinates.variables());
+  if (tuning == Tuning::amd) return interleaved(position, followers);
+  position = least_work(saddle, position, followers);
   using InPlace = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>>;
-  const InPlace factors(dominant(pattern));
-  return positions_by_rounds(factors.matrixL().nestedExpression(), followers);
+  const InPlace factors(dominant(saddle, position));
+  const std::vector<int> rounds =
+      positions_by_rounds(factors.matrixL().nestedExpression(), placed(followers, position));
+  for (int& place : position) place = rounds[place];
+  return position;
 }
 
-template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_order(
-    const SparseMatrix&);
-template std::vector<int> TunedSimplicial<double, Tuning::amd>::elimination_order(
-    const SparseMatrix&);
-template std::vector<int> TunedSimplicial<double, Tuning::own>::equivalent_order(
-    const SparseMatrix&, const Followers&);
-template std::vector<int> TunedSimplicial<double, Tuning::amd>::equivalent_order(
-    const SparseMatrix&, const Followers&);
-template std::vector<int> TunedSimplicial<float, Tuning::own>::elimination_order(
-    const SparseMatrix&);
-template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(const SparseMatrix&,
-                                                                                const Followers&);
+template std::vector<int> SimplicialSolver<double>::elimination_order(const SparseMatrix&, Tuning);
+template std::vector<int> SimplicialSolver<double>::saddle_order(const SparseMatrix&,
+                                                                 const Followers&, const Model&,
+                                                                 const Coordinates&, Tuning);
+template std::vector<int> SimplicialSolver<float>::elimination_order(const SparseMatrix&, Tuning);
+template std::vector<int> SimplicialSolver<float>::saddle_order(const SparseMatrix&,
+                                                                const Followers&, const Model&,
+                                                                const Coordinates&, Tuning);
 
 }  // namespace mbs::eigen_sparse

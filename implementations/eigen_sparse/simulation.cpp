@@ -4,11 +4,12 @@
 namespace mbs::eigen_sparse {
 
 template <class Form>
-SparseSimulation<Form>::SparseSimulation(const Model& model, const StepSettings& settings)
+SparseSimulation<Form>::SparseSimulation(const Model& model, const StepSettings& settings,
+                                         Tuning tuning)
     : Simulation(model, settings),
       settings_(settings),
-      mechanism_(model, numbered_by(model, Form::Solver::elimination_order)),
-      form_(model, settings, mechanism_),
+      mechanism_(model, numbered_by(model, Form::Solver::elimination_order, tuning)),
+      form_(model, settings, mechanism_, tuning),
       terms_(model.constraints()) {}
 
 template <class Form>
@@ -102,10 +103,6 @@ void SparseSimulation<Form>::update_multipliers() {
 
 template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
 template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
-template class SparseSimulation<PenaltyForm<TunedSimplicial<double, Tuning::amd>>>;
-template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::amd>>>;
-template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::colamd>>>;
-template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::panels>>>;
 #ifdef MBS_PARDISO
 template class SparseSimulation<PenaltyForm<PardisoSolver>>;
 #endif

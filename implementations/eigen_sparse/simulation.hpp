@@ -18,7 +18,7 @@ namespace mbs::eigen_sparse {
 template <class Form>
 class SparseSimulation : public Simulation {
  public:
-  SparseSimulation(const Model& model, const StepSettings& settings);
+  SparseSimulation(const Model& model, const StepSettings& settings, Tuning tuning = Tuning::own);
 
  protected:
   void do_set_state(const State& state) override;
@@ -49,10 +49,6 @@ class SparseSimulation : public Simulation {
 
 extern template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
 extern template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
-extern template class SparseSimulation<PenaltyForm<TunedSimplicial<double, Tuning::amd>>>;
-extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::amd>>>;
-extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::colamd>>>;
-extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::panels>>>;
 #ifdef MBS_PARDISO
 extern template class SparseSimulation<PenaltyForm<PardisoSolver>>;
 #endif

@@ -3,14 +3,14 @@
 
 namespace mbs::eigen_sparse {
 
-template <class Scalar, Tuning kTuning>
-TunedSimplicial<Scalar, kTuning>::TunedSimplicial(const Values& matrix, Definiteness definiteness)
+template <class Scalar>
+SimplicialSolver<Scalar>::SimplicialSolver(const Values& matrix, Definiteness definiteness, Tuning)
     : matrix_(matrix), definiteness_(definiteness) {
   factors_.analyzePattern(matrix_);
 }
 
-template <class Scalar, Tuning kTuning>
-bool TunedSimplicial<Scalar, kTuning>::factorize() {
+template <class Scalar>
+bool SimplicialSolver<Scalar>::factorize() {
   factors_.refactorize(matrix_);
   // Eigen itself refuses nothing but a pivot that is exactly zero.
   if (factors_.info() != Eigen::Success) return false;
@@ -20,15 +20,14 @@ bool TunedSimplicial<Scalar, kTuning>::factorize() {
              : pivots.cwiseAbs().template minCoeff<Eigen::PropagateNaN>() > 0;
 }
 
-template <class Scalar, Tuning kTuning>
-void TunedSimplicial<Scalar, kTuning>::solve(Side& x) const {
+template <class Scalar>
+void SimplicialSolver<Scalar>::solve(Side& x) const {
   factors_.matrixL().solveInPlace(x);
   x.array() /= factors_.pivots().array();
   factors_.matrixU().solveInPlace(x);
 }
 
-template class TunedSimplicial<double, Tuning::own>;
-template class TunedSimplicial<double, Tuning::amd>;
-template class TunedSimplicial<float, Tuning::own>;
+template class SimplicialSolver<double>;
+template class SimplicialSolver<float>;
 
 }  // namespace mbs::eigen_sparse

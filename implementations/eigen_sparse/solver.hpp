@@ -25,31 +25,38 @@ using Followers = std::vector<std::vector<int>>;
 
 /// Settings of the solvers.
 enum class Tuning {
-  own,     ///< what was fastest here, see README.md
-  amd,     ///< in AMD's order as it is
-  colamd,  ///< SuperLU: in the order of COLAMD, its default
-  panels,  ///< SuperLU: panels and relaxed supernodes as large as its sp_ienv says
+  own,  ///< what was fastest here, see README.md
+  amd,  ///< in AMD's order as it is
+  // Of SuperLU alone: always in the order of ...
+  mmd,     ///< its minimum degree on T + T^T
+  model,   ///< the model
+  colamd,  ///< COLAMD, its default
+  metis,   ///< METIS
+  trees,   ///< SimplicialSolver, by the lowest trees
+  panels,  ///< panels and relaxed supernodes as large as its sp_ienv says
 };
 
 /// L D L^T by Eigen::SimplicialLDLT in float or double. The unknowns already are in elimination
 /// order, so Eigen is told to keep it and reads the upper triangle in place; the derived class
 /// reaches the part of factorize() behind Eigen's permutation and copies.
-template <class Scalar, Tuning kTuning>
-class TunedSimplicial {
+template <class Scalar>
+class SimplicialSolver {
  public:
   using Values = Eigen::SparseMatrix<Scalar>;
   using Side = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   static constexpr Triangle kTriangle = Triangle::upper;
   /// AMD's fill, eliminated by rounds unless tuned otherwise: position[i] is where unknown i of
   /// `pattern` (n x n, both triangles) is eliminated.
-  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern);
-  /// An order of the same fill as the present one, in the form that this solver wants, where
-  /// followers still follow.
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
-                                                         const Followers& followers);
+  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern,
+                                                          Tuning tuning);
+  /// The same for `saddle`, unknowns in the order of `coordinates` and behind them multipliers,
+  /// where followers follow.
+  [[nodiscard]] static std::vector<int> saddle_order(const SparseMatrix& saddle,
+                                                     const Followers& followers, const Model& model,
+                                                     const Coordinates& coordinates, Tuning tuning);
 
   /// Symbolic analysis. `matrix` outlives the solver; its values may change, its pattern not.
-  TunedSimplicial(const Values& matrix, Definiteness definiteness);
+  SimplicialSolver(const Values& matrix, Definiteness definiteness, Tuning tuning);
   /// Factorizes the present values; false unless all pivots are positive numbers, or for a
   /// quasi-definite matrix numbers other than zero.
   [[nodiscard]] bool factorize();
@@ -68,24 +75,28 @@ class TunedSimplicial {
   Preordered factors_;
 };
 
-/// L U by SuperLU with diagonal pivots; the same contract as TunedSimplicial.
-template <class Scalar, Tuning kTuning>
-class TunedSuperlu {
+/// L U by SuperLU with diagonal pivots; the same contract as SimplicialSolver.
+template <class Scalar>
+class SuperluSolver {
  public:
   using Values = Eigen::SparseMatrix<Scalar>;
   using Side = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   static constexpr Triangle kTriangle = Triangle::full;
-  /// SuperLU's minimum degree ordering on T + T^T, or as tuned, postordered.
-  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern);
-  [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern,
-                                                         const Followers& followers);
+  /// Of several orders that in which it should be the fastest, or as tuned; postordered.
+  [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern,
+                                                          Tuning tuning);
+  [[nodiscard]] static std::vector<int> saddle_order(const SparseMatrix& saddle,
+                                                     const Followers& followers, const Model& model,
+                                                     const Coordinates& coordinates, Tuning tuning);
 
   /// Symbolic analysis, and a first factorization, which sizes the storage of L and U: the values
   /// of `matrix` are to be those of a matrix as `definiteness` says.
-  TunedSuperlu(const Values& matrix, Definiteness definiteness);
-  ~TunedSuperlu();
+  SuperluSolver(const Values& matrix, Definiteness definiteness, Tuning tuning);
+  ~SuperluSolver();
   [[nodiscard]] bool factorize();
   void solve(Side& x);
+  /// What the first factorization took, in operations; infinity if it failed.
+  [[nodiscard]] double cost() const;
 
  private:
   struct Handle;
@@ -94,18 +105,9 @@ class TunedSuperlu {
 
 [[nodiscard]] std::string superlu_version();
 
-template <class Scalar>
-using SimplicialSolver = TunedSimplicial<Scalar, Tuning::own>;
-template <class Scalar>
-using SuperluSolver = TunedSuperlu<Scalar, Tuning::own>;
-
-extern template class TunedSimplicial<double, Tuning::own>;
-extern template class TunedSimplicial<float, Tuning::own>;
-extern template class TunedSimplicial<double, Tuning::amd>;
-extern template class TunedSuperlu<double, Tuning::own>;
-extern template class TunedSuperlu<float, Tuning::own>;
-extern template class TunedSuperlu<double, Tuning::amd>;
-extern template class TunedSuperlu<double, Tuning::colamd>;
-extern template class TunedSuperlu<double, Tuning::panels>;
+extern template class SimplicialSolver<double>;
+extern template class SimplicialSolver<float>;
+extern template class SuperluSolver<double>;
+extern template class SuperluSolver<float>;
 
 }  // namespace mbs::eigen_sparse

@@ -1,6 +1,7 @@
 // SuperLU's factorization and solves on the arrays of the matrix.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "solver.hpp"
@@ -13,13 +14,15 @@ namespace {
 // clears each time is (m + 400) panel columns. Both stay below sp_ienv(1), which sizes statistics.
 constexpr int kPanelColumns = 1;
 constexpr int kRelaxedColumns = 6;
+// As many operations take as long as what a supernode takes besides.
+constexpr double kOperationsOfASupernode = 250.0;
 
 }  // namespace
 
 /// SuperLU's view of the matrix (nothing is copied, and SuperLU only reads it) and its factors.
-template <class Scalar, Tuning kTuning>
-struct TunedSuperlu<Scalar, kTuning>::Handle {
-  Handle(const Values& values, Definiteness kind);
+template <class Scalar>
+struct SuperluSolver<Scalar>::Handle {
+  Handle(const Values& values, Definiteness kind, Tuning tuning);
   ~Handle();
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
@@ -32,9 +35,7 @@ struct TunedSuperlu<Scalar, kTuning>::Handle {
 
   const Values& matrix;
   Definiteness definiteness;
-  // Larger ones are SuperLU's own; only `panels` has them.
-  int panel = kTuning == Tuning::panels ? sp_ienv(1) : kPanelColumns;
-  int relaxed = kTuning == Tuning::panels ? sp_ienv(2) : kRelaxedColumns;
+  int panel = kPanelColumns, relaxed = kRelaxedColumns;
   superlu_options_t options = options_for_diagonal_pivots();
   std::vector<int> identity, perm_r, etree;  // of columns, of rows; column elimination tree
   std::vector<int> diagonal;                 // where the diagonal of the matrix is stored
@@ -44,13 +45,17 @@ struct TunedSuperlu<Scalar, kTuning>::Handle {
   SuperLUStat_t statistics{};
 };
 
-template <class Scalar, Tuning kTuning>
-TunedSuperlu<Scalar, kTuning>::Handle::Handle(const Values& values, Definiteness kind)
+template <class Scalar>
+SuperluSolver<Scalar>::Handle::Handle(const Values& values, Definiteness kind, Tuning tuning)
     : matrix(values),
       definiteness(kind),
       identity(values.cols()),
       perm_r(values.cols()),
       etree(values.cols()) {
+  if (tuning == Tuning::panels) {  // larger ones, SuperLU's own
+    panel = sp_ienv(1);
+    relaxed = sp_ienv(2);
+  }
   std::iota(identity.begin(), identity.end(), 0);
   int* starts = const_cast<int*>(matrix.outerIndexPtr());
   int* rows = const_cast<int*>(matrix.innerIndexPtr());
@@ -65,14 +70,14 @@ TunedSuperlu<Scalar, kTuning>::Handle::Handle(const Values& values, Definiteness
   StatInit(&statistics);
 }
 
-template <class Scalar, Tuning kTuning>
-TunedSuperlu<Scalar, kTuning>::Handle::~Handle() {
+template <class Scalar>
+SuperluSolver<Scalar>::Handle::~Handle() {
   drop_factors();
   StatFree(&statistics);
 }
 
-template <class Scalar, Tuning kTuning>
-void TunedSuperlu<Scalar, kTuning>::Handle::drop_factors() {
+template <class Scalar>
+void SuperluSolver<Scalar>::Handle::drop_factors() {
   if (lower.Store == nullptr) return;
   Destroy_SuperNode_Matrix(&lower);
   Destroy_CompCol_Matrix(&upper);
@@ -81,8 +86,8 @@ void TunedSuperlu<Scalar, kTuning>::Handle::drop_factors() {
 
 /// Whether all numbers are finite: a wrong one in Phi_q reaches the diagonal of Phi_q^T Phi_q. In
 /// a saddle-point matrix it does not, and products of entries appear in the factorization alone.
-template <class Scalar, Tuning kTuning>
-bool TunedSuperlu<Scalar, kTuning>::Handle::finite() const {
+template <class Scalar>
+bool SuperluSolver<Scalar>::Handle::finite() const {
   if (definiteness == Definiteness::quasi) {
     return std::isfinite(
         Eigen::Map<const Side>(matrix.valuePtr(), matrix.nonZeros()).squaredNorm());
@@ -93,9 +98,9 @@ bool TunedSuperlu<Scalar, kTuning>::Handle::finite() const {
 }
 
 /// Whether all pivots are right and on the diagonal.
-template <class Scalar, Tuning kTuning>
+template <class Scalar>
 template <class Predicate>
-bool TunedSuperlu<Scalar, kTuning>::Handle::diagonal_pivots(Predicate is_right) const {
+bool SuperluSolver<Scalar>::Handle::diagonal_pivots(Predicate is_right) const {
   const auto& store = *static_cast<const SCformat*>(lower.Store);
   const auto* values = static_cast<const Scalar*>(store.nzval);
   bool right = true;
@@ -106,24 +111,24 @@ bool TunedSuperlu<Scalar, kTuning>::Handle::diagonal_pivots(Predicate is_right) 
   return right;
 }
 
-template <class Scalar, Tuning kTuning>
-bool TunedSuperlu<Scalar, kTuning>::Handle::pivots_right() const {
+template <class Scalar>
+bool SuperluSolver<Scalar>::Handle::pivots_right() const {
   return definiteness == Definiteness::positive
              ? diagonal_pivots([](Scalar pivot) { return pivot > 0; })
              : diagonal_pivots([](Scalar pivot) { return std::abs(pivot) > 0; });
 }
 
-template <class Scalar, Tuning kTuning>
-TunedSuperlu<Scalar, kTuning>::TunedSuperlu(const Values& matrix, Definiteness definiteness)
-    : handle_(std::make_unique<Handle>(matrix, definiteness)) {
+template <class Scalar>
+SuperluSolver<Scalar>::SuperluSolver(const Values& matrix, Definiteness definiteness, Tuning tuning)
+    : handle_(std::make_unique<Handle>(matrix, definiteness, tuning)) {
   (void)factorize();
 }
 
-template <class Scalar, Tuning kTuning>
-TunedSuperlu<Scalar, kTuning>::~TunedSuperlu() = default;
+template <class Scalar>
+SuperluSolver<Scalar>::~SuperluSolver() = default;
 
-template <class Scalar, Tuning kTuning>
-bool TunedSuperlu<Scalar, kTuning>::factorize() {
+template <class Scalar>
+bool SuperluSolver<Scalar>::factorize() {
   Handle& h = *handle_;
   // Pivoting past a NaN would leave the pattern that L and U have room for.
   if (!h.finite()) return false;
@@ -142,8 +147,8 @@ bool TunedSuperlu<Scalar, kTuning>::factorize() {
 }
 
 /// The matrix is symmetric: U^T y = b and L^T x = y gather along columns and are faster than L, U.
-template <class Scalar, Tuning kTuning>
-void TunedSuperlu<Scalar, kTuning>::solve(Side& x) {
+template <class Scalar>
+void SuperluSolver<Scalar>::solve(Side& x) {
   Handle& h = *handle_;
   constexpr auto solve_triangular = SuperluCalls<Scalar>::solve_triangular;
   char lower[] = "L", upper[] = "U", transposed[] = "T", unit[] = "U", stored[] = "N";
@@ -152,10 +157,15 @@ void TunedSuperlu<Scalar, kTuning>::solve(Side& x) {
   solve_triangular(lower, transposed, unit, &h.lower, &h.upper, x.data(), &h.statistics, &info);
 }
 
-template class TunedSuperlu<double, Tuning::own>;
-template class TunedSuperlu<double, Tuning::amd>;
-template class TunedSuperlu<double, Tuning::colamd>;
-template class TunedSuperlu<double, Tuning::panels>;
-template class TunedSuperlu<float, Tuning::own>;
+/// SuperLU counts zeros that relaxed supernodes store too.
+template <class Scalar>
+double SuperluSolver<Scalar>::cost() const {
+  if (handle_->lower.Store == nullptr) return std::numeric_limits<double>::infinity();
+  const auto& factor = *static_cast<const SCformat*>(handle_->lower.Store);
+  return handle_->statistics.ops[FACT] + kOperationsOfASupernode * (factor.nsuper + 1);
+}
+
+template class SuperluSolver<double>;
+template class SuperluSolver<float>;
 
 }  // namespace mbs::eigen_sparse
