@@ -53,7 +53,8 @@ Implementation implementation() {
       .version = library_version(),
       .licence = "LGPL-2.1-or-later AND GPL-2.0-or-later",
       .variants = {{.name = "simplicial",
-                    .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later itself, in a library that is GPL as a whole)",
+                    .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later itself, "
+                                   "in a library that is GPL as a whole)",
                     .create = create<kSimplicial>,
                     .serves = {.terms = kTerms, .saddle_point = true},
                     .operations = create_operations},
@@ -71,6 +72,8 @@ Implementation implementation() {
                                                  "AMD's order, supernodes of up to 16 columns"),
                    tried_supernodal<Tuning::metis>(
                        "supernodal_metis", "order of METIS, supernodes of up to 16 columns"),
+                   tried_supernodal<Tuning::trees>("supernodal_trees",
+                                                   "lowest trees, supernodes of up to 16 columns"),
                    tried_supernodal<Tuning::defaults>(
                        "supernodal_defaults", "AMD's order, supernodes as CHOLMOD has them")},
       .role = Role::paper,

@@ -152,6 +152,12 @@ double least_time(const HalfPattern& pattern, int ordering) {
   return least;
 }
 
+std::vector<int> inverse(const int* permutation, int n) {
+  std::vector<int> result(n);
+  for (int k = 0; k < n; ++k) result[permutation[k]] = k;
+  return result;
+}
+
 }  // namespace
 
 Half preferred_half(Factorization factorization) {
@@ -169,15 +175,19 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method) 
   common.supernodal = CHOLMOD_SIMPLICIAL;
   common.method[0].ordering = ordering;
   cholmod_sparse matrix = view(pattern, nullptr);
-  const Factor factor = analyze(matrix, common);
+  Factor factor = analyze(matrix, common);
   const int n = pattern.size();
   const int* old = static_cast<const int*>(factor->Perm);
-  if (!supernodal && method.tuning == Tuning::own) {
-    return low_order(n, pattern.positions(), {old, old + n}, Before(n));
+  if (supernodal ? method.tuning == Tuning::trees : method.tuning == Tuning::own) {
+    std::vector<int> low = low_order(n, pattern.positions(), {old, old + n}, Before(n));
+    if (!supernodal) return low;
+    low = inverse(low.data(), n);
+    common.method[0].ordering = CHOLMOD_GIVEN;  // and a postorder, of the same height
+    factor.reset(cholmod_analyze_p(&matrix, low.data(), nullptr, 0, &common));
+    if (factor == nullptr) throw Unsupported(kNoMemory);
+    old = static_cast<const int*>(factor->Perm);
   }
-  std::vector<int> number(n);
-  for (int k = 0; k < n; ++k) number[old[k]] = k;
-  return number;
+  return inverse(old, n);
 }
 
 struct Solver::Cholmod {
@@ -358,7 +368,7 @@ std::string library_version() {
 /// that wakes waiting threads, of which there are none, by a system call at each region's end. The
 /// supernodal code has a region or two per supernode. Whoever else calls it gets the runtime's own.
 extern "C" [[gnu::visibility("default")]] void GOMP_parallel(void (*region)(void*), void* data,
-                                                              unsigned threads, unsigned flags) {
+                                                             unsigned threads, unsigned flags) {
   static const auto runtime =
       reinterpret_cast<decltype(&GOMP_parallel)>(dlsym(RTLD_NEXT, "GOMP_parallel"));
   if (mbs::csc_cholmod::on_this_thread || runtime == nullptr) return region(data);

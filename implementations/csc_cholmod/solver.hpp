@@ -19,6 +19,7 @@ enum class Tuning {
   own,       ///< what was fastest here: README.md, "CHOLMOD's settings"
   amd,       ///< the same in AMD's order, supernodes of up to 16 columns
   metis,     ///< the same in that of METIS
+  trees,     ///< the same in that of the simplicial code, by the lowest tree
   defaults,  ///< in AMD's order, supernodes as CHOLMOD merges them by itself
 };
 

@@ -7,7 +7,6 @@
 #include "filled_graph.hpp"
 #include "minimum_degree.hpp"
 #include "precedence.hpp"
-#include "shallow_order.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -61,13 +60,14 @@ Precedence precedence_of_rows(const Pattern& saddle, int n, const std::vector<Ow
 }
 
 /// T's order for the coordinates, every multiplier as soon as it may come.
-std::vector<int> interleaved_order(const Pattern& saddle, int n, Precedence precedence) {
+std::vector<int> interleaved_order(const Pattern& saddle, int n, Precedence precedence,
+                                   Order of_tangent) {
   std::vector<int> order;
   const auto append = [&](int multiplier) { order.push_back(multiplier); };
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
     if (precedence.is_free(multiplier)) append(multiplier);
   }
-  for (const int i : shallow_order(tangent_pattern(saddle, n))) {
+  for (const int i : ordered(tangent_pattern(saddle, n), of_tangent)) {
     order.push_back(i);
     precedence.take_out(i, append);
   }
@@ -86,9 +86,11 @@ long long work(const Pattern& saddle, const std::vector<int>& order) {
 
 }  // namespace
 
-std::vector<int> saddle_order(const Pattern& saddle, int n, const std::vector<Owned>& owned) {
+std::vector<int> saddle_order(const Pattern& saddle, int n, const std::vector<Owned>& owned,
+                              Order order) {
   const Precedence precedence = precedence_of_rows(saddle, n, owned);
-  std::vector<int> interleaved = interleaved_order(saddle, n, precedence);
+  std::vector<int> interleaved = interleaved_order(saddle, n, precedence, order);
+  if (order != Order::shallow) return interleaved;
   std::vector<int> by_degree = minimum_degree_order(saddle, precedence);
   return work(saddle, by_degree) < work(saddle, interleaved) ? by_degree : interleaved;
 }

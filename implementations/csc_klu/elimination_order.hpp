@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "shallow_order.hpp"
 #include "storage.hpp"
 
 namespace mbs::csc_klu {
@@ -22,8 +23,9 @@ struct Owned {
 /// owned coordinate, those of its owner count as its own.
 ///
 /// Of two such orders, the one that leaves less work: T's for the coordinates, with each multiplier
-/// as soon as it may come; and minimum degree on the graph of coordinates and multipliers.
+/// as soon as it may come; and minimum degree on the graph of coordinates and multipliers. With
+/// another `order` of T than shallow_order()'s: the first.
 [[nodiscard]] std::vector<int> saddle_order(const Pattern& saddle, int n,
-                                            const std::vector<Owned>& owned);
+                                            const std::vector<Owned>& owned, Order order);
 
 }  // namespace mbs::csc_klu

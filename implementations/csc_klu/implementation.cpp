@@ -29,6 +29,21 @@ constexpr Serves with_geometric_stiffness(Serves serves) {
   return serves;
 }
 
+template <Order kOrder>
+std::unique_ptr<Simulation> create_tried(const Model& model, const StepSettings& settings) {
+  return create_ordered(model, settings, kOrder);
+}
+
+template <Order kOrder>
+Variant tried(const char* name, const char* description) {
+  return {.name = name,
+          .description = description,
+          .create = create_tried<kOrder>,
+          .unsymmetric = true,
+          .serves = {.terms = kTerms, .saddle_point = true},
+          .tried_for = "refactor"};
+}
+
 }  // namespace
 
 Implementation implementation() {
@@ -54,12 +69,8 @@ Implementation implementation() {
                     .create = create_simulation<GuardedRefactorization>,
                     .unsymmetric = true,
                     .serves = with_geometric_stiffness(kServes)},
-                   {.name = "amd",
-                    .description = "in AMD's order as it is",
-                    .create = create_newton<AmdRefactorization>,
-                    .unsymmetric = true,
-                    .serves = {.terms = kTerms},
-                    .tried_for = "refactor"}},
+                   tried<Order::amd>("amd", "in AMD's order as it is"),
+                   tried<Order::colamd>("colamd", "in the order of COLAMD")},
       .role = Role::paper,
   };
 }

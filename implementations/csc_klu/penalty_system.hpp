@@ -17,10 +17,11 @@ class PenaltySystem {
  public:
   static constexpr bool kMultipliersNeedPhi = true;
 
-  PenaltySystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
+  PenaltySystem(const Model& model, const StepSettings& settings, Equations<dim>& equations,
+                Order order = Order::shallow)
       : penalty_(settings.penalty),
         equations_(equations),
-        pattern_(model, equations.jacobian_pattern, equations.force_pattern),
+        pattern_(model, equations.jacobian_pattern, equations.force_pattern, order),
         tangent_(pattern_, mass_values(model, pattern_.pattern), equations.weight * penalty_),
         hessians_(needed_hessians(model, settings, equations.jacobian_pattern)),
         geometric_(hessians_, pattern_.pattern, equations.weight),

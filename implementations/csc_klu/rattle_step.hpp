@@ -25,7 +25,7 @@ class RattleStep {
         stages_(stage_lengths(settings.scheme, settings.step)),
         equations_(model, kUnweighted),
         rates_(equations_),
-        system_(model, settings, equations_, {}),
+        system_(model, settings, equations_, std::vector<ElementBlock>()),
         moved_(equations_.n, 0.0),
         force_(equations_.n, 0.0),
         zeros_(equations_.m, 0.0) {}

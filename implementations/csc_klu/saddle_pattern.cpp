@@ -103,9 +103,10 @@ Pattern saddle_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
 template <int dim>
 SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>& jacobian,
                                   const std::vector<ElementBlock>& elements,
-                                  const std::vector<HessianEntry>& hessians)
+                                  const std::vector<HessianEntry>& hessians, Order elimination)
     : pattern(saddle_pattern(model, jacobian, elements, hessians)),
-      order(saddle_order(pattern, model.variables(), owned_coordinates(model, jacobian))),
+      order(saddle_order(pattern, model.variables(), owned_coordinates(model, jacobian),
+                         elimination)),
       shares(elements, pattern, [](int, int) { return false; }) {
   const int n = model.variables();
   visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {

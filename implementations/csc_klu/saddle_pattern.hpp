@@ -7,6 +7,7 @@
 #include "element_shares.hpp"
 #include "hessians.hpp"
 #include "jacobian_pattern.hpp"
+#include "shallow_order.hpp"
 #include "storage.hpp"
 
 namespace mbs::csc_klu {
@@ -32,7 +33,7 @@ struct SaddlePattern {
   /// `elements`: those that give C and K; `hessians`: what Eq. (16) adds to K, or nothing.
   SaddlePattern(const Model& model, const JacobianPattern<dim>& jacobian,
                 const std::vector<ElementBlock>& elements,
-                const std::vector<HessianEntry>& hessians);
+                const std::vector<HessianEntry>& hessians, Order elimination = Order::shallow);
 
   Pattern pattern;
   std::vector<int> order;           ///< of elimination

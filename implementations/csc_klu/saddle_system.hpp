@@ -18,18 +18,20 @@ class SaddleSystem {
  public:
   static constexpr bool kMultipliersNeedPhi = false;
 
-  SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
-      : SaddleSystem(model, settings, equations, element_blocks(equations.force_pattern, dim)) {}
+  SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations,
+               Order order = Order::shallow)
+      : SaddleSystem(model, settings, equations, element_blocks(equations.force_pattern, dim),
+                     order) {}
 
   /// `elements`: those that give C and K; without any, T_0 is M.
   SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations,
-               const std::vector<ElementBlock>& elements)
+               const std::vector<ElementBlock>& elements, Order order = Order::shallow)
       : equations_(equations),
         has_elements_(!elements.empty()),
         multiplier_factor_(4.0 / (settings.step * settings.step)),
         epsilon_(multiplier_factor_ / settings.penalty),
         hessians_(needed_hessians(model, settings, equations.jacobian_pattern)),
-        pattern_(model, equations.jacobian_pattern, elements, hessians_),
+        pattern_(model, equations.jacobian_pattern, elements, hessians_, order),
         geometric_(hessians_, pattern_.pattern, equations.weight),
         scales_(multiplier_scales(model, equations.jacobian_pattern, equations.jacobian)),
         matrix_(pattern_, model, epsilon_, scales_),

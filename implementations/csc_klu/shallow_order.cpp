@@ -1,7 +1,8 @@
-// AMD's order of a symmetric pattern, rearranged so that few eliminations wait for one another.
+// Orders of a symmetric pattern: AMD's, rearranged so that few eliminations wait for one another.
 #include "shallow_order.hpp"
 
 #include <amd.h>
+#include <colamd.h>
 
 #include <algorithm>
 #include <numeric>
@@ -19,6 +20,19 @@ std::vector<int> amd(const Pattern& pattern) {
                 nullptr, nullptr) < AMD_OK) {
     throw Unsupported("amd_order refused the pattern of the tangent matrix");
   }
+  return order;
+}
+
+std::vector<int> column_amd(const Pattern& pattern) {
+  const int n = pattern.columns(), entries = static_cast<int>(pattern.row.size());
+  std::vector<int> work(pattern.row), order(pattern.column_begin);
+  work.resize(colamd_recommended(entries, n, n));
+  int statistics[COLAMD_STATS];
+  if (colamd(n, n, static_cast<int>(work.size()), work.data(), order.data(), nullptr, statistics) ==
+      0) {
+    throw Unsupported("colamd refused the pattern of the tangent matrix");
+  }
+  order.pop_back();
   return order;
 }
 
@@ -71,6 +85,11 @@ class Remainder {
 };
 
 }  // namespace
+
+std::vector<int> ordered(const Pattern& pattern, Order order) {
+  if (order == Order::amd) return amd(pattern);
+  return order == Order::colamd ? column_amd(pattern) : shallow_order(pattern);
+}
 
 std::vector<int> shallow_order(const Pattern& pattern) {
   const std::vector<int> given = amd(pattern);

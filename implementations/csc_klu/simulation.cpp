@@ -20,11 +20,11 @@ namespace {
 template <int dim, TangentSolver Solver>
 class NewtonSimulation final : public Simulation {
  public:
-  NewtonSimulation(const Model& model, const StepSettings& settings)
+  NewtonSimulation(const Model& model, const StepSettings& settings, Order order)
       : Simulation(model, settings),
         settings_(settings),
         equations_(model, settings.step),
-        tangent_pattern_(model, equations_.jacobian_pattern, equations_.force_pattern),
+        tangent_pattern_(model, equations_.jacobian_pattern, equations_.force_pattern, order),
         tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
                  equations_.weight * settings.penalty),
         rates_(equations_),
@@ -131,6 +131,15 @@ bool is_trapezoidal(const StepSettings& settings) {
   return settings.scheme == Scheme::penalty || settings.scheme == Scheme::saddle_point;
 }
 
+template <TangentSolver Solver>
+std::unique_ptr<Simulation> create_newton(const Model& model, const StepSettings& settings,
+                                          Order order = Order::shallow) {
+  if (model.dimension() == 2) {
+    return std::make_unique<NewtonSimulation<2, Solver>>(model, settings, order);
+  }
+  return std::make_unique<NewtonSimulation<3, Solver>>(model, settings, order);
+}
+
 }  // namespace
 
 template <TangentSolver Solver>
@@ -141,14 +150,13 @@ std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSett
   return create_newton<Solver>(model, settings);
 }
 
-template <TangentSolver Solver>
-std::unique_ptr<Simulation> create_newton(const Model& model, const StepSettings& settings) {
-  if (model.dimension() == 2) return std::make_unique<NewtonSimulation<2, Solver>>(model, settings);
-  return std::make_unique<NewtonSimulation<3, Solver>>(model, settings);
+std::unique_ptr<Simulation> create_ordered(const Model& model, const StepSettings& settings,
+                                           Order order) {
+  return settings.scheme == Scheme::penalty
+             ? create_newton<Refactorization>(model, settings, order)
+             : create_trapezoidal<Refactorization>(model, settings, order);
 }
 
-template std::unique_ptr<Simulation> create_newton<AmdRefactorization>(const Model&,
-                                                                       const StepSettings&);
 template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                         const StepSettings&);
 template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "mbs/simulation.hpp"
+#include "shallow_order.hpp"
 #include "solver.hpp"
 
 namespace mbs::csc_klu {
@@ -14,13 +15,10 @@ template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_simulation(const Model& model,
                                                             const StepSettings& settings);
 
-/// The same, of "The step" with no setting of its own.
-template <TangentSolver Solver>
-[[nodiscard]] std::unique_ptr<Simulation> create_newton(const Model& model,
-                                                        const StepSettings& settings);
+/// `refactor` in either form of "The step" with no setting of its own, in another order.
+[[nodiscard]] std::unique_ptr<Simulation> create_ordered(const Model& model,
+                                                         const StepSettings& settings, Order order);
 
-extern template std::unique_ptr<Simulation> create_newton<AmdRefactorization>(const Model&,
-                                                                              const StepSettings&);
 extern template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                                const StepSettings&);
 extern template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,

@@ -46,14 +46,6 @@ class Refactorization {
   LuFactors factors_;
 };
 
-/// `amd`: the same in AMD's order as KLU finds it.
-class AmdRefactorization : public Refactorization {
- public:
-  AmdRefactorization(const Pattern& pattern, std::span<const double> values,
-                     const Structure& structure = {})
-      : Refactorization(pattern, values, {.kind = structure.kind}) {}
-};
-
 /// `factor`: new pivots at every call; only the ordering stays.
 class Factorization {
  public:

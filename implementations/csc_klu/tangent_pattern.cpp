@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "element_blocks.hpp"
-#include "shallow_order.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -94,11 +93,11 @@ Pattern union_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
 
 template <int dim>
 TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian,
-                                    const ForcePattern& forces) {
+                                    const ForcePattern& forces, Order elimination) {
   const std::vector<Pair> pairs = point_pairs(jacobian);
   const std::vector<ElementBlock> elements = element_blocks(forces, dim);
   pattern = union_pattern(model, jacobian, pairs, elements);
-  order = shallow_order(pattern);
+  order = ordered(pattern, elimination);
   const auto columns = [&](int p, int q) {
     Columns offsets;
     for (int k = 0; k < dim; ++k) offsets[k] = pattern.offset(dim * p, dim * q + k);

@@ -7,6 +7,7 @@
 #include "element_shares.hpp"
 #include "force_pattern.hpp"
 #include "jacobian_pattern.hpp"
+#include "shallow_order.hpp"
 #include "storage.hpp"
 
 namespace mbs::csc_klu {
@@ -35,7 +36,7 @@ struct TangentPattern {
   };
 
   TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian,
-                 const ForcePattern& forces);
+                 const ForcePattern& forces, Order elimination = Order::shallow);
 
   Pattern pattern;
   std::vector<int> order;  ///< of elimination

@@ -17,11 +17,11 @@ namespace {
 template <int dim, NewtonSystem System>
 class TrapezoidalSimulation final : public Simulation {
  public:
-  TrapezoidalSimulation(const Model& model, const StepSettings& settings)
+  TrapezoidalSimulation(const Model& model, const StepSettings& settings, Order order)
       : Simulation(model, settings),
         settings_(settings),
         equations_(model, settings.step),
-        system_(model, settings, equations_),
+        system_(model, settings, equations_, order),
         correction_(equations_.n, 0.0),
         projection_(settings.step, equations_, system_, phases_) {}
 
@@ -178,26 +178,29 @@ class TrapezoidalSimulation final : public Simulation {
 };
 
 template <int dim, TangentSolver Solver>
-std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings, Order order) {
   using Penalty = TrapezoidalSimulation<dim, PenaltySystem<dim, Solver>>;
   using Saddle = TrapezoidalSimulation<dim, SaddleSystem<dim, Solver>>;
-  if (settings.scheme == Scheme::penalty) return std::make_unique<Penalty>(model, settings);
-  return std::make_unique<Saddle>(model, settings);
+  if (settings.scheme == Scheme::penalty) return std::make_unique<Penalty>(model, settings, order);
+  return std::make_unique<Saddle>(model, settings, order);
 }
 
 }  // namespace
 
 template <TangentSolver Solver>
-std::unique_ptr<Simulation> create_trapezoidal(const Model& model, const StepSettings& settings) {
-  return model.dimension() == 2 ? create<2, Solver>(model, settings)
-                                : create<3, Solver>(model, settings);
+std::unique_ptr<Simulation> create_trapezoidal(const Model& model, const StepSettings& settings,
+                                               Order order) {
+  return model.dimension() == 2 ? create<2, Solver>(model, settings, order)
+                                : create<3, Solver>(model, settings, order);
 }
 
 template std::unique_ptr<Simulation> create_trapezoidal<Refactorization>(const Model&,
-                                                                         const StepSettings&);
+                                                                         const StepSettings&,
+                                                                         Order);
 template std::unique_ptr<Simulation> create_trapezoidal<Factorization>(const Model&,
-                                                                       const StepSettings&);
-template std::unique_ptr<Simulation> create_trapezoidal<GuardedRefactorization>(
-    const Model&, const StepSettings&);
+                                                                       const StepSettings&, Order);
+template std::unique_ptr<Simulation> create_trapezoidal<GuardedRefactorization>(const Model&,
+                                                                                const StepSettings&,
+                                                                                Order);
 
 }  // namespace mbs::csc_klu

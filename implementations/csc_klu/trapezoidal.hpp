@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "mbs/simulation.hpp"
+#include "shallow_order.hpp"
 #include "solver.hpp"
 
 namespace mbs::csc_klu {
@@ -12,6 +13,7 @@ namespace mbs::csc_klu {
 /// and the projections; `model` outlives it. Instantiated in trapezoidal.cpp for every solver.
 template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_trapezoidal(const Model& model,
-                                                             const StepSettings& settings);
+                                                             const StepSettings& settings,
+                                                             Order order = Order::shallow);
 
 }  // namespace mbs::csc_klu

@@ -29,7 +29,7 @@ struct MultifrontalSolver::Mumps {
     kSlack = 14,  // percent of memory more than the analysis expects
   };
   enum Kind { kPositiveDefinite = 1, kGeneralSymmetric = 2 };
-  enum Ordering { kMinimumDegree = 0, kGivenOrder = 1, kMinimumFill = 2, kMetis = 5 };
+  enum Ordering { kMinimumDegree = 0, kGivenOrder = 1, kMinimumFill = 2, kScotch = 3 };
   static constexpr int kAutomaticScaling = 77;
   static constexpr int kAllProcesses = -987654;  // the communicator; here, one process
 
@@ -42,6 +42,8 @@ struct MultifrontalSolver::Mumps {
   /// KEEP(1), internal to MUMPS: how readily the analysis merges a front with its parent.
   int& amalgamation() { return structure.keep[0]; }
 
+  /// The ordering that the analysis took: another one where MUMPS was built without that asked for.
+  [[nodiscard]] int ordering() const { return structure.infog[6]; }
   /// Estimates of the analysis: the number of fronts and the operations to eliminate in them.
   [[nodiscard]] int fronts() const { return structure.infog[5]; }
   [[nodiscard]] double operations() const { return structure.rinfog[0]; }

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "solver.hpp"
-
 namespace mbs::csc_mumps {
 
 namespace {
@@ -73,9 +71,7 @@ std::vector<std::vector<int>> owned_coordinates(const Model& model,
 
 SaddlePointMatrix::SaddlePointMatrix(const Model& model, const Assembly& assembly,
                                      const StepSettings& settings)
-    : assembly_(assembly),
-      variables_(model.variables()),
-      constraints_(model.constraints()) {
+    : assembly_(assembly), variables_(model.variables()), constraints_(model.constraints()) {
   std::vector<std::pair<int, int>> entries;
   for (const MassEntry& mass : model.mass()) entries.emplace_back(mass.col, mass.row);
   assembly.forces().visit_couplings(
@@ -101,7 +97,7 @@ Triplets SaddlePointMatrix::pattern() const {
   return result;
 }
 
-std::vector<int> SaddlePointMatrix::elimination_order(const Model& model) const {
+std::vector<int> SaddlePointMatrix::elimination_order(const Model& model, Tuning tuning) const {
   const auto rows = rows_of(assembly_.jacobian_pattern(), constraints_);
   const auto owned = owned_coordinates(model, rows);
   Triplets graph{variables_, {}, {}};
@@ -113,7 +109,7 @@ std::vector<int> SaddlePointMatrix::elimination_order(const Model& model) const 
   }
   // Of a coordinate its position, of a multiplier that of its last coordinate, or 0; of one that
   // owns some that of the last of these. Whoever has one of them waits for the owner's others too.
-  std::vector<int> rank = MultifrontalSolver::minimum_degree(std::move(graph)), last_of;
+  std::vector<int> rank = MultifrontalSolver::positions(std::move(graph), tuning), last_of;
   for (const auto& row : rows) {
     int last = 0;
     for (const RowEntry& entry : row) last = std::max(last, rank[entry.column]);

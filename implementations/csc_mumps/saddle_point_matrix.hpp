@@ -8,6 +8,7 @@
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
 #include "pattern.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_mumps {
 
@@ -21,10 +22,10 @@ class SaddlePointMatrix {
   [[nodiscard]] Triplets pattern() const;
   /// One an entry of the pattern; never moves.
   [[nodiscard]] std::span<double> values() { return values_; }
-  /// When each variable should be eliminated, from 1: coordinates in an order of minimum degree for
-  /// T0 + Phi_q' Phi_q, each multiplier right after the last of its coordinates, or after the one
-  /// that it owns (README.md). `model` is that of the constructor.
-  [[nodiscard]] std::vector<int> elimination_order(const Model& model) const;
+  /// When each variable should be eliminated, from 1: coordinates in an order of minimum degree (or
+  /// as tuned) for T0 + Phi_q' Phi_q, each multiplier right after the last of its coordinates, or
+  /// after the one that it owns (README.md). `model` is that of the constructor.
+  [[nodiscard]] std::vector<int> elimination_order(const Model& model, Tuning tuning) const;
 
   /// The values, for the Phi_q and forces evaluated last. False if there is a NaN or an infinity.
   [[nodiscard]] bool evaluate();

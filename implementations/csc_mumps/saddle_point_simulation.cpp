@@ -6,10 +6,11 @@
 
 namespace mbs::csc_mumps {
 
-SaddlePointSimulation::SaddlePointSimulation(const Model& model, const StepSettings& settings)
+SaddlePointSimulation::SaddlePointSimulation(const Model& model, const StepSettings& settings,
+                                             Tuning tuning)
     : CscMumpsSimulation(model, settings, model.variables() + model.constraints()),
       matrix_(model, assembly_, settings),
-      solver_(matrix_.pattern(), matrix_.values(), matrix_.elimination_order(model)) {}
+      solver_(matrix_.pattern(), matrix_.values(), matrix_.elimination_order(model, tuning)) {}
 
 bool SaddlePointSimulation::solve_newton() {
   phases_.enter(Phase::evaluation);

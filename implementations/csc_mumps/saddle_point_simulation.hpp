@@ -9,7 +9,7 @@ namespace mbs::csc_mumps {
 
 class SaddlePointSimulation : public CscMumpsSimulation {
  public:
-  SaddlePointSimulation(const Model& model, const StepSettings& settings);
+  SaddlePointSimulation(const Model& model, const StepSettings& settings, Tuning tuning);
 
  protected:
   bool solve_newton() override;

@@ -12,7 +12,7 @@ namespace mbs::csc_mumps {
 std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings,
                                             Tuning tuning) {
   if (settings.scheme == Scheme::saddle_point) {
-    return std::make_unique<SaddlePointSimulation>(model, settings);
+    return std::make_unique<SaddlePointSimulation>(model, settings, tuning);
   }
   return std::make_unique<PenaltySimulation>(model, settings, tuning);
 }

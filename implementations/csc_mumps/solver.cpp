@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mumps.hpp"
+#include "orders.hpp"
 
 namespace mbs::csc_mumps {
 
@@ -37,8 +38,14 @@ MultifrontalSolver::MultifrontalSolver(Triplets pattern, std::span<double> value
     case Tuning::amd:
       analyse(std::array<int, 1>{Mumps::kMinimumDegree});
       break;
+    case Tuning::scotch:
+      analyse(std::array<int, 1>{Mumps::kScotch});
+      break;
     case Tuning::metis:
-      analyse(std::array<int, 1>{Mumps::kMetis});
+    case Tuning::trees:
+      position_ = positions(pattern_, tuning);
+      mumps_->structure.perm_in = position_.data();
+      analyse(std::array<int, 1>{Mumps::kGivenOrder});
       break;
     case Tuning::defaults:
       mumps_->set(Mumps::kScaling, Mumps::kAutomaticScaling);
@@ -91,6 +98,7 @@ void MultifrontalSolver::analyse(std::span<const int> orderings) {
   }
   choose(best.first, best.second);
   mumps_->analyse();
+  if (mumps_->ordering() != best.first) throw Unsupported("MUMPS was built without this order");
 }
 
 bool MultifrontalSolver::factorize_and_solve(std::span<double> x) {
@@ -111,9 +119,11 @@ bool MultifrontalSolver::solve(std::span<double> x) {
   return mumps_->call(Mumps::kSolve);
 }
 
-std::vector<int> MultifrontalSolver::minimum_degree(Triplets pattern) {
+std::vector<int> MultifrontalSolver::positions(Triplets pattern, Tuning tuning) {
+  if (tuning == Tuning::metis) return metis_positions(pattern);
+  if (tuning == Tuning::trees) return low_tree_positions(pattern);
   const auto mumps = Mumps::start(Mumps::kPositiveDefinite);
-  mumps->set(Mumps::kOrdering, Mumps::kMinimumDegree);
+  mumps->set(Mumps::kOrdering, tuning == Tuning::scotch ? Mumps::kScotch : Mumps::kMinimumDegree);
   mumps->structure.n = pattern.order;
   mumps->structure.nnz = static_cast<MUMPS_INT8>(pattern.row.size());
   mumps->structure.irn = pattern.row.data();

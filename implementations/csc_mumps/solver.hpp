@@ -10,11 +10,13 @@
 
 namespace mbs::csc_mumps {
 
-/// What is asked of MUMPS for positive definite matrices.
+/// What is asked of MUMPS.
 enum class Tuning {
   own,       ///< what was fastest here: README.md, "MUMPS here"
   amd,       ///< the same, always in an order of approximate minimum degree
+  scotch,    ///< the same, always in that of Scotch
   metis,     ///< the same, always in that of METIS
+  trees,     ///< the same, always in one of minimum degree with low trees
   defaults,  ///< order, amalgamation and scaling as MUMPS chooses them
 };
 
@@ -37,8 +39,9 @@ class MultifrontalSolver {
   /// Solves in place with the last factors. False if memory ran out.
   [[nodiscard]] bool solve(std::span<double> x);
 
-  /// Positions, from 1, in an order of minimum degree. Entries may be repeated.
-  static std::vector<int> minimum_degree(Triplets pattern);
+  /// When each variable is eliminated, from 1: by minimum degree, or as tuned. Entries may be
+  /// repeated.
+  static std::vector<int> positions(Triplets pattern, Tuning tuning);
   /// The library's version as the library itself tells it.
   static std::string version();
 

@@ -4,10 +4,15 @@
 #include <vector>
 
 #include "pattern.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_umfpack {
 
-/// AMD's order of the coordinates on the pattern of T, with every multiplier put right after the
+/// Of the variables of T, from the first that is eliminated to the last: AMD's, then the model's;
+/// or one as tuned.
+Orders orders_of(const SparsityPattern& T, Tuning tuning);
+
+/// The order `coordinates` on the pattern of T, with every multiplier put right after the
 /// last of the coordinates that its row of Phi_q has. Multipliers are numbered after the
 /// coordinates.
 ///
@@ -19,7 +24,7 @@ namespace mbs::csc_umfpack {
 ///
 /// Example: coordinates in the order 1, 0, 2 and rows {0, 1}, {2} give 1, 0, 3, 2, 4; if the first
 /// row owns 1, they give 1, 3, 0, 2, 4.
-std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
+std::vector<int> elimination_order(const std::vector<int>& coordinates, const Lists& rows,
                                    const Lists& owned);
 
 }  // namespace mbs::csc_umfpack

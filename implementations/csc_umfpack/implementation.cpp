@@ -34,14 +34,13 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
              : create_with<PenaltySystem>(model, settings, kTuning);
 }
 
-/// The penalty form alone: the order of the saddle-point matrix leaves no choice.
 template <Tuning kTuning>
 Variant tried(std::string name, std::string description) {
   return {.name = std::move(name),
           .description = std::move(description),
           .create = create<kTuning>,
           .unsymmetric = true,
-          .serves = {.terms = kTerms},
+          .serves = {.terms = kTerms, .saddle_point = true},
           .tried_for = "symmetric"};
 }
 
@@ -69,6 +68,7 @@ Implementation implementation() {
                     .serves = {.terms = kTerms, .saddle_point = true}},
                    tried<Tuning::amd>("amd", "always in AMD's order"),
                    tried<Tuning::metis>("metis", "in the order of METIS"),
+                   tried<Tuning::trees>("trees", "in an order of minimum degree with low trees"),
                    tried<Tuning::defaults>("defaults", "UMFPACK's defaults, refinement too")},
   };
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "elimination_order.hpp"
+
 namespace mbs::csc_umfpack {
 
 template <int D>
@@ -15,7 +17,8 @@ PenaltySystem<D>::PenaltySystem(const MassMatrix& mass, const Jacobian<D>& jacob
       quarter_(settings.step * settings.step / 4.0),
       factor_(quarter_ * settings.penalty),
       tangent_(mass, jacobian.layout(), forces.layout(), factor_),
-      solver_(tangent_.pattern(), tuning),
+      solver_(tangent_.pattern(), tuning,
+              tuning == Tuning::trees ? orders_of(tangent_.pattern(), tuning) : Orders()),
       row_factors_(jacobian.layout().rows()) {}
 
 template <int D>

@@ -60,19 +60,22 @@ Lists owned_coordinates(const JacobianLayout& layout, const Lists& rows, const M
 
 template <int D>
 SaddlePointSchedule<D>::SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
-                                            const ForceLayout& forces)
-    : SaddlePointSchedule(mass, layout, forces, row_coordinates(layout, D)) {}
+                                            const ForceLayout& forces, Tuning tuning)
+    : SaddlePointSchedule(mass, layout, forces, tuning, row_coordinates(layout, D)) {}
 
 template <int D>
 SaddlePointSchedule<D>::SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
-                                            const ForceLayout& forces, const Lists& rows)
+                                            const ForceLayout& forces, Tuning tuning,
+                                            const Lists& rows)
     : pattern(
           bordered_pattern(union_pattern(mass.pattern(), element_coordinates(forces, D)), rows)),
       places(element_places<D>(pattern, forces)) {
   Lists coupled = rows;
   add_element_coordinates(forces, D, coupled);
-  order = elimination_order(union_pattern(mass.pattern(), coupled), rows,
-                            owned_coordinates(layout, rows, mass, D));
+  const Lists owned = owned_coordinates(layout, rows, mass, D);
+  for (const auto& order : orders_of(union_pattern(mass.pattern(), coupled), tuning)) {
+    orders.push_back(elimination_order(order, rows, owned));
+  }
   const int n = mass.pattern().variables();
   for (const auto& block : layout.blocks) {
     Block at{pattern.position(block.offset, n + block.row)};
@@ -93,8 +96,8 @@ SaddlePointSchedule<D>::SaddlePointSchedule(const MassMatrix& mass, const Jacobi
 
 template <int D>
 SaddlePointMatrix<D>::SaddlePointMatrix(const MassMatrix& mass, const JacobianLayout& layout,
-                                        const ForceLayout& forces, double epsilon)
-    : schedule_(mass, layout, forces), values_(schedule_.pattern.rows.size(), 0.0) {
+                                        const ForceLayout& forces, double epsilon, Tuning tuning)
+    : schedule_(mass, layout, forces, tuning), values_(schedule_.pattern.rows.size(), 0.0) {
   const SparsityPattern &M = mass.pattern(), &K = schedule_.pattern;
   const int n = M.variables();
   for (int col = 0; col < n; ++col) {

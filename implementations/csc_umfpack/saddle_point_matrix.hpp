@@ -9,6 +9,7 @@
 #include "forces.hpp"
 #include "jacobian.hpp"
 #include "pattern.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_umfpack {
 
@@ -23,17 +24,17 @@ struct SaddlePointSchedule {
   };
 
   SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
-                      const ForceLayout& forces);
+                      const ForceLayout& forces, Tuning tuning);
 
   SparsityPattern pattern;
-  std::vector<int> order;          ///< of elimination
+  Orders orders;                   ///< of elimination
   std::vector<Block> blocks;       ///< of Phi_q, in the order in which it is written
   std::vector<Place<D>> places;    ///< of the elements, see element_places()
   std::vector<int> with_elements;  ///< positions that elements add to, each once
 
  private:
   SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
-                      const ForceLayout& forces, const Lists& rows);
+                      const ForceLayout& forces, Tuning tuning, const Lists& rows);
 };
 
 /// The values of Eq. (12). The entries of M that no element reaches, linear rows and -epsilon are
@@ -43,10 +44,10 @@ class SaddlePointMatrix {
  public:
   /// `epsilon` is 4 / (alpha Delta t^2).
   SaddlePointMatrix(const MassMatrix& mass, const JacobianLayout& layout, const ForceLayout& forces,
-                    double epsilon);
+                    double epsilon, Tuning tuning);
 
   [[nodiscard]] const SparsityPattern& pattern() const { return schedule_.pattern; }
-  [[nodiscard]] const std::vector<int>& order() const { return schedule_.order; }
+  [[nodiscard]] const Orders& orders() const { return schedule_.orders; }
   [[nodiscard]] const double* values() const { return values_.data(); }
 
   void update(const Jacobian<D>& jacobian, const Forces<D>& forces);

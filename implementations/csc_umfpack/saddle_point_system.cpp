@@ -14,8 +14,9 @@ SaddlePointSystem<D>::SaddlePointSystem(const MassMatrix& mass, const Jacobian<D
       n_(mass.pattern().variables()),
       m_(jacobian.layout().rows()),
       quarter_(settings.step * settings.step / 4.0),
-      matrix_(mass, jacobian.layout(), forces.layout(), 1.0 / (quarter_ * settings.penalty)),
-      solver_(matrix_.pattern(), tuning, matrix_.order()),
+      matrix_(mass, jacobian.layout(), forces.layout(), 1.0 / (quarter_ * settings.penalty),
+              tuning),
+      solver_(matrix_.pattern(), tuning, matrix_.orders()),
       row_factors_(m_) {}
 
 template <int D>

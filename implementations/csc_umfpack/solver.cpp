@@ -15,15 +15,18 @@ namespace {
 /// as it takes at most so many times the operations of AMD's order (README.md).
 constexpr double kWorthOfPath = 2.0;
 
-/// Multiplications that elimination in the order of the pattern takes, which needs no numbers: less
-/// than half of what UMFPACK counts.
-double multiplications(const SparsityPattern& pattern) {
+/// Multiplications that elimination in `order`, or that of the pattern, takes, which needs no
+/// numbers: less than half of what UMFPACK counts.
+double multiplications(const SparsityPattern& pattern, const std::vector<int>& order) {
   const int n = pattern.variables();
-  std::vector<int> parent(n, -1), seen_from(n, -1), below(n);  // of columns; below: entries of L
+  std::vector<int> place(n), parent(n, -1), seen_from(n, -1), below(n);  // below: entries of L
+  for (int k = 0; k < n; ++k) place[order.empty() ? k : order[k]] = k;
   for (int row = 0; row < n; ++row) {
     seen_from[row] = row;
-    for (int k = pattern.starts[row]; pattern.rows[k] < row; ++k) {
-      for (int column = pattern.rows[k]; seen_from[column] != row; column = parent[column]) {
+    const int variable = order.empty() ? row : order[row];
+    for (int k = pattern.starts[variable]; k < pattern.starts[variable + 1]; ++k) {
+      for (int column = place[pattern.rows[k]]; column < row && seen_from[column] != row;
+           column = parent[column]) {
         if (parent[column] < 0) parent[column] = row;
         seen_from[column] = row;
         ++below[column];
@@ -46,19 +49,20 @@ void Solver::FreeNumeric::operator()(void* numeric) const {
   umfpack_di_free_numeric(&numeric);
 }
 
-Solver::Solver(const SparsityPattern& pattern, Tuning tuning, const std::vector<int>& order)
+Solver::Solver(const SparsityPattern& pattern, Tuning tuning, const Orders& orders)
     : pattern_(pattern), integers_(pattern.variables()), reals_(5 * pattern.variables()) {
   tune(tuning);
-  if (!order.empty()) {
-    analyse(UMFPACK_ORDERING_GIVEN, order.data());
-    return;
-  }
-  analyse(tuning == Tuning::metis ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD, nullptr);
+  const auto take = [&](std::size_t order, int by_umfpack) {
+    order < orders.size() ? analyse(UMFPACK_ORDERING_GIVEN, orders[order].data())
+                          : analyse(by_umfpack, nullptr);
+  };
+  take(0, tuning == Tuning::metis ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD);
   if (tuning != Tuning::own) return;
   const double operations = count_operations();
-  if (multiplications(pattern) > kWorthOfPath * operations) return;
-  analyse(UMFPACK_ORDERING_NONE, nullptr);
-  if (count_operations() > kWorthOfPath * operations) analyse(UMFPACK_ORDERING_AMD, nullptr);
+  const std::vector<int>& path = orders.empty() ? std::vector<int>() : orders[1];
+  if (multiplications(pattern, path) > kWorthOfPath * operations) return;
+  take(1, UMFPACK_ORDERING_NONE);
+  if (count_operations() > kWorthOfPath * operations) take(0, UMFPACK_ORDERING_AMD);
 }
 
 double Solver::count_operations() {

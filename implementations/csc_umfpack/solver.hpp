@@ -15,17 +15,22 @@ enum class Tuning {
   own,       ///< what was fastest here: README.md, "Choices in UMFPACK"
   amd,       ///< the same, always in AMD's order
   metis,     ///< the same, always in that of METIS
+  trees,     ///< the same, always in one of minimum degree with low trees
   defaults,  ///< UMFPACK's: strategy of its choice, scaling, thresholds, refinement
 };
+
+/// Orders of elimination.
+using Orders = std::vector<std::vector<int>>;
 
 /// Solves A x = b, where A is symmetric and has the pattern that the solver was made from, which
 /// must outlive it. Pivots are taken from the diagonal: A is positive definite, or quasi-definite
 /// and given with an order in which its diagonal will do.
 class Solver {
  public:
-  /// Analyses the pattern. `order` lists what to eliminate from first to last; empty: as tuned.
-  /// Throws Unsupported if UMFPACK refuses the pattern.
-  Solver(const SparsityPattern& pattern, Tuning tuning, const std::vector<int>& order = {});
+  /// Analyses the pattern. `orders` list what to eliminate from first to last: as orders_of() has
+  /// them, or none, where UMFPACK orders by itself. Throws Unsupported if UMFPACK refuses the
+  /// pattern.
+  Solver(const SparsityPattern& pattern, Tuning tuning, const Orders& orders = {});
 
   /// `A` are values in the order of the pattern. False if A is singular or not finite, or if memory
   /// runs out; solve() must not be called then.
