@@ -1,22 +1,31 @@
-# Rows of what was tried, by variant and scene.
+# Rows of what was tried, by form of the step, variant and scene.
+from collections import namedtuple
+
 from analysis.core import timing
 from analysis.core.contest import cells_of, verdicts_of
 from analysis.core.controls import controls
 
+# By form: what roles of its records begin with, and its key in the settings.
+Form = namedtuple("Form", "prefix scenes")
+FORMS = {"penalty": Form("", "scenes"), "saddle-point": Form("saddle-point-", "saddle_point")}
+
 
 def build(records, view):
-    gate = [one for one in records if one.role == "gate"]
-    said = verdicts_of(gate)
-    rows = timing.processes(timing.counted([one for one in records if one.role != "gate"]))
-    found = []
-    for scene in view.settings["scenes"]:
-        here = rows[rows.scene == scene]
-        cells = cells_of(here, scene, said)
-        for name, one in view.registry.tried.items():
-            known = {"scene": scene, "base": one["tried_for"], "alternative": name, "description": one["description"]}
-            row = _row(here, cells, name, one["tried_for"]) or _unasked(gate, scene, name)
-            found += [known | row] if row else []
-    return {"alternatives": found, "controls": controls(rows)}
+    found, twins = [], []
+    for form, (prefix, key) in FORMS.items():
+        mine = [one for one in records if one.role.startswith(prefix or ("gate", "time"))]
+        gate = [one for one in mine if one.role == f"{prefix}gate"]
+        said = verdicts_of(gate)
+        rows = timing.processes(timing.counted([one for one in mine if one not in gate]))
+        twins += controls(rows)
+        for scene in view.settings.get(key, []):
+            here = rows[rows.scene == scene]
+            cells = cells_of(here, scene, said)
+            for name, one in view.registry.tried.items():
+                known = {"scene": scene, "scheme": form, "base": one["tried_for"], "alternative": name, "description": one["description"]}
+                row = _row(here, cells, name, one["tried_for"]) or _unasked(gate, scene, name)
+                found += [known | row] if row else []
+    return {"alternatives": found, "controls": twins}
 
 
 def _row(rows, cells, name, base):
