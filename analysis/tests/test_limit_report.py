@@ -122,7 +122,7 @@ def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
     assert rows.lead["own/x"] == pytest.approx(3) and rows.lead["own/y"] == pytest.approx(6) and set(rows.rival) == {"one/a"}
     scenes = found["scenes"].set_index("implementation")
     assert (scenes.status["one/b"], scenes.reason["one/b"]) == ("disagrees", "why")
-    assert (scenes.status["two/c"], scenes.step_us["two/c"]) == ("slower", 9.0) and scenes.verdict["two/c"] == ""
+    assert scenes.status["two/c"] == "dropped" and numpy.isnan(scenes.step_us["two/c"])  # the gate was not asked
     assert scenes.to_rival["own/x"] == pytest.approx(1 / 3) and numpy.isnan(scenes.to_rival["two/c"])
     assert scenes.variables["own/x"] == 6 and scenes.dimension["own/x"] == 2
 
@@ -130,7 +130,7 @@ def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
 def test_without_a_verdict_or_a_rival_there_is_no_lead_and_the_reason_is_said():
     first = look(A, own_x=1.0, one_a=3.0, own_y="unsupported: no chain")
     rows = made(first, agree("problem", A, "one_a"), bench("problem", A, one_a=3.0))["leads"].set_index("implementation")
-    assert (rows.status["own/x"], rows.status["own/y"]) == ("slower", "unsupported") and rows.lead.isna().all()
+    assert (rows.status["own/x"], rows.status["own/y"]) == ("dropped", "unsupported") and rows.lead.isna().all()
     alone = made(first, agree("problem", A, "own_x"), bench("problem", A, own_x=1.0))["leads"]
     assert alone.status[0] == "dropped" and "no library" in alone.reason[0]
     spent = made(first, agree("problem", A, "own_x", "one_a"), bench("problem", A, status="dropped", own_x=1.0, one_a=3.0))["leads"]
