@@ -12,7 +12,6 @@
 
 #include "model_math/kinematics.hpp"
 #include "printable.hpp"
-#include "run/rounding.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -49,6 +48,7 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
       quarter_turn_(scene),
       local_errors_(scene, judge_.length(), watch_.passes_on()),
+      forces_(scene),
       adds_local_errors_(watch_.freedoms() > 0),
       is_driven_(is_driven(scene.model)) {}
 
