@@ -365,7 +365,7 @@ def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
     assert f"  expected error        {exact} 2 s\n" in told_with(error=error | {"exact": 0.0098})
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=()):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=(), outcome_forces=()):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     advice = asked(deadline_us=deadline_us, step=step, candidates=[
@@ -377,7 +377,7 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
     def row(kind, setting, name, step, duration):
         return {"status": dict(plain).get(name, "ok") if kind == "outcome" else "ok", "setting": setting.name, "step": step,
                 "step_us_p99": p99 if kind == "outcome" else 1e3, "step_us": 20.0, "estimate": estimate(step), "exact": exact, "duration": duration,
-                "forces_lost": dict(forces).get(setting, "")}
+                "forces_lost": dict(outcome_forces).get(name, "") if kind == "outcome" else dict(forces).get(setting, "")}
     run = Runs(row)
     advice.timed = lambda one, number: run(f"round{number}", one.setting, one.implementation, one.step, 1.0)
     verify(advice, run)
@@ -422,6 +422,12 @@ def test_forces_that_are_off_refuse_a_setting_whoever_has_it():
         "status": "degraded", "status_reason": "both", "forces_lost": "off", "position_error_estimate": 1e-6})
     pilot = Runner(SimpleNamespace(one=lambda cell: record, names={}), "bar", 4, [Contender("a/b", "a/b")]).pilot(PENALTY, "a/b", 1e-2, 1.0, 60)
     assert (pilot.status, pilot.reason, pilot.valid) == ("forces-lost", "off", False)
+
+
+def test_a_line_whose_forces_are_off_without_half_the_step_is_not_advised():
+    advice, _ = verified(lambda step: 1e-4, outcome_forces={"a": 'output "M" is off'})
+    assert advice.chosen.implementation == "b"
+    assert advice.candidates[0].reason == 'forces-lost as it would be advised: output "M" is off'
 
 
 def test_an_estimate_below_that_of_a_shorter_step_is_raised():

@@ -72,7 +72,7 @@ class JudgedRun {
   };
 
   [[nodiscard]] double time(long step) const;
-  [[nodiscard]] long judged_after(long step) const;
+  [[nodiscard]] long uneven_after(long step, long interval) const;
   [[nodiscard]] long judged_after(long step, const State& state);
   void count(const StepOutcome& outcome);
   void copy(State& state);
@@ -127,7 +127,7 @@ class JudgedRun {
   LocalErrors local_errors_;
   ForceErrors forces_;
   std::vector<double> off_;             // n, m
-  int noted_ = 0;                       // places of note_beyond()
+  long next_compared_ = 0;              // step, of forces
   long next_noted_ = 2;                 // step; half the step is compared first after one
   std::optional<double> beyond_since_;  // s, by when it was found beyond AccurateBounds
   std::optional<HalfStepRun> half_;

@@ -75,10 +75,6 @@ void JudgedRun::conclude() {
 void JudgedRun::note_beyond(long step) {
   if (step < next_noted_ && step < steps_) return;
   next_noted_ = step + std::max(1L, steps_ / 32);
-  constexpr int kEvery = 4;  // it takes as long as some steps
-  if (forces_.is_needed() && (is_over_ || noted_++ % kEvery == 0)) {
-    forces_.compare(time(good_.step), good_.state);
-  }
   if (!is_beyond()) {
     beyond_since_.reset();
   } else if (!beyond_since_) {
