@@ -111,9 +111,8 @@ int simulate(const SimulateOptions& options) {
   require_duration(scene, settings);
   std::vector<std::string> warnings = options.step.warnings(model, settings.step);
   add_judging_warning(scene, settings, warnings);
-  for (const std::string& one : {force_warning(scene), projection_warning(scene, settings.step)}) {
-    if (!one.empty()) warnings.push_back(one);
-  }
+  const std::string open = force_warning(scene);
+  if (!open.empty()) warnings.push_back(open);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);
   json["warnings"] = warnings;

@@ -11,7 +11,6 @@
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/output_values.hpp"
-#include "run/rounding.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene/scene.hpp"
@@ -200,46 +199,6 @@ TEST(ConstraintForce, OfALinearConstraintIsTheMultiplierOfPhiAsGiven) {
                      "terms": [{"point": "P", "axis": "y", "coefficient": 4}]}],
     "outputs": [{"name": "f", "constraint_force": "floor"}]})");
   EXPECT_NEAR(values[0], -5.0, 1e-9);  // -4 lambda = 20 N
-}
-
-TEST(ConstraintForce, DegradesARunWhereRoundingOfThePenaltyFormIsAsLarge) {
-  SceneData data = parse_scene(R"({"gravity": [0, -9.81],
-      "points": [{"name": "A", "position": [0, 0], "fixed": true},
-                 {"name": "B", "position": [1, 0]}],
-      "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1}],
-      "outputs": [{"name": "pull", "constraint_force": "rod"}]})",
-                               "test");
-  const Scene scene{"test", Model(data.model), {}, {}, data.elements, data.assembly};
-  const auto drowns = [&](double penalty, Scheme scheme) {
-    RunSettings settings;
-    settings.duration = 0.1;
-    settings.step = {.penalty = penalty, .tolerance = 1e-9, .scheme = scheme};
-    const RunSummary summary = run(scene, test::reference(), settings);
-    EXPECT_NE(summary.reason.find(summary.forces_lost), std::string::npos);
-    return summary.forces_lost.find("% of the constraint forces") != std::string::npos;
-  };
-  EXPECT_FALSE(drowns(1e9, Scheme::penalty));
-  EXPECT_TRUE(drowns(1e16, Scheme::penalty));
-  EXPECT_FALSE(drowns(1e16, Scheme::saddle_point));
-  const State start = initial_state(scene.model);
-  const auto said = [&](double penalty, Precision precision) {
-    return drowned_forces(scene.model, scene.model, {.penalty = penalty, .precision = precision},
-                          start);
-  };
-  EXPECT_EQ(said(1e9, Precision::double_precision), "");
-  EXPECT_NE(said(1e9, Precision::single_precision), "");
-  EXPECT_EQ(said(1e3, Precision::single_precision), "");
-}
-
-TEST(ConstraintForce, IsNotDrownedWhereNothingActs) {
-  const Model model(four_bar(1));
-  State state = initial_state(model);
-  EXPECT_GT(rounding_of_penalty_forces(model, model, 1e20, state), 0.1);
-  ModelData weightless = four_bar(1);
-  std::ranges::fill(weightless.force, 0.0);
-  std::ranges::fill(state.lambda, 0.0);
-  const Model without(std::move(weightless));
-  EXPECT_EQ(rounding_of_penalty_forces(without, without, 1e20, state), 0.0);
 }
 
 TEST(Energy, IncludesWhatDrivenPointsCarry) {

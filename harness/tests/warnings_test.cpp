@@ -180,22 +180,6 @@ std::string said_of_square(
       "test"));
 }
 
-TEST(Warnings, TellOfOutputsThatSwingWhereAccelerationsAreNotProjected) {
-  const Scene scene = scene_of(
-      nlohmann::json::parse(R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
-      {"name": "A", "position": [1, 0]}], "rods": [{"name": "OA", "between": ["O", "A"], "mass": 1}],
-    "outputs": [{"name": "pull", "constraint_force": "OA"}, {"name": "aA", "acceleration": "A"},
-      {"name": "place", "position": "A"}]})"),
-      "test");
-  StepSettings settings;
-  EXPECT_EQ(projection_warning(scene, settings), "");
-  settings.projections = Projections::velocity;
-  EXPECT_TRUE(projection_warning(scene, settings).starts_with("outputs \"pull\", \"aA\": not "));
-  settings.projections = Projections::both;
-  settings.projections_every = 4;
-  EXPECT_NE(projection_warning(scene, settings), "");
-}
-
 TEST(Warnings, TellOfForcesThatConstraintsLeaveOpen) {
   const std::string one = R"(, {"between": ["O", "B"], "mass": 1})";
   EXPECT_EQ(said_of_square(one), "");

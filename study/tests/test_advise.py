@@ -145,6 +145,16 @@ def test_a_pilot_that_fails_voids_no_step_that_others_have_shown(status):
     assert one.chosen >= 1e-2 if status == "refused" else one.chosen or one.reason.startswith("crashed: too long")
 
 
+def test_where_forces_are_off_a_shorter_step_is_tried_but_not_with_a_change_that_is_to_blame():
+    """As where accelerations are not projected: those of the scheme itself are right in the same steps."""
+    def run(setting, step):
+        is_off = step > (5e-3 if setting == SADDLE else 0.0)
+        return Pilot(step, "forces-lost" if is_off else "ok", 1e-4 * step**2, 1.0, 'output "M" is off')
+    _, found = searched_by(run, settings=[SADDLE, LOOSE])
+    assert 2e-3 < found[SADDLE].chosen <= 5e-3 and found[LOOSE].chosen is None
+    assert found[LOOSE].reason == 'forces-lost: output "M" is off' and len(found[LOOSE].pilots) < 4
+
+
 def at_step(step, estimate, limit=1e-3):
     """(Next, steps that were run) of a setting whose step is given."""
     found = []
@@ -355,7 +365,7 @@ def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
     assert f"  expected error        {exact} 2 s\n" in told_with(error=error | {"exact": 0.0098})
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=()):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=(), forces=(), outcome_forces=()):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     advice = asked(deadline_us=deadline_us, step=step, candidates=[
@@ -367,7 +377,7 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
     def row(kind, setting, name, step, duration):
         return {"status": dict(plain).get(name, "ok") if kind == "outcome" else "ok", "setting": setting.name, "step": step,
                 "step_us_p99": p99 if kind == "outcome" else 1e3, "step_us": 20.0, "estimate": estimate(step), "exact": exact, "duration": duration,
-                "forces_lost": dict(forces).get(setting, "")}
+                "forces_lost": dict(outcome_forces).get(name, "") if kind == "outcome" else dict(forces).get(setting, "")}
     run = Runs(row)
     advice.timed = lambda one, number: run(f"round{number}", one.setting, one.implementation, one.step, 1.0)
     verify(advice, run)
@@ -403,15 +413,21 @@ def test_who_was_only_slower_comes_back_when_the_fastest_needs_a_shorter_step(us
     assert advice.chosen.reason == ""
 
 
-def test_forces_that_are_rounding_refuse_a_setting_whoever_has_it():
+def test_forces_that_are_off_refuse_a_setting_whoever_has_it():
     other = timing.Candidate(SADDLE, "a", 8e-3, [{"step": 8e-3, "step_us": 30.0, "step_us_p99": 1.0}] * 3)
-    advice, ran = verified(lambda step: 1e-4, others=[other], forces={PENALTY: "rounding may be 18 % of the constraint forces"})
+    advice, ran = verified(lambda step: 1e-4, others=[other], forces={PENALTY: 'output "M" is off'})
     assert len(ran) == 2 and advice.chosen is other
-    assert advice.verifications[0]["refused"] == "forces-lost: rounding may be 18 % of the constraint forces"
+    assert advice.verifications[0]["refused"] == 'forces-lost: output "M" is off'
     record = SimpleNamespace(done=True, seconds=0.1, command=["mbs"], name="x", machine={}, output={
-        "status": "degraded", "status_reason": "both", "forces_lost": "rounding", "position_error_estimate": 1e-6})
+        "status": "degraded", "status_reason": "both", "forces_lost": "off", "position_error_estimate": 1e-6})
     pilot = Runner(SimpleNamespace(one=lambda cell: record, names={}), "bar", 4, [Contender("a/b", "a/b")]).pilot(PENALTY, "a/b", 1e-2, 1.0, 60)
-    assert (pilot.status, pilot.reason, pilot.valid) == ("forces-lost", "rounding", False)
+    assert (pilot.status, pilot.reason, pilot.valid) == ("forces-lost", "off", False)
+
+
+def test_a_line_whose_forces_are_off_without_half_the_step_is_not_advised():
+    advice, _ = verified(lambda step: 1e-4, outcome_forces={"a": 'output "M" is off'})
+    assert advice.chosen.implementation == "b"
+    assert advice.candidates[0].reason == 'forces-lost as it would be advised: output "M" is off'
 
 
 def test_an_estimate_below_that_of_a_shorter_step_is_raised():

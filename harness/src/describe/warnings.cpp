@@ -181,20 +181,6 @@ std::string force_warning(const Scene& scene) {
       fmt::join(open, ", "));
 }
 
-std::string projection_warning(const Scene& scene, const StepSettings& settings) {
-  if (settings.projections == Projections::both && settings.projections_every == 1) return "";
-  std::vector<std::string> swinging;
-  for (const Output& output : scene.elements.outputs) {
-    if (is_force(output) || output.kind == Output::Kind::acceleration)
-      swinging.push_back(in_quotes(output.name));
-  }
-  if (swinging.empty()) return "";
-  return fmt::format(
-      "outputs {}: not every step projects accelerations (--projections both does), so that these "
-      "may swing from step to step, also where the motion is right",
-      fmt::join(swinging, ", "));
-}
-
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,
                                           PenaltyFrom from) {
   std::vector<std::string> result;

@@ -59,10 +59,6 @@ std::string tolerance_warning(const Model& model, const StepSettings& settings);
 /// forces would hold the same motion; one line, empty if none is.
 std::string force_warning(const Scene& scene);
 
-/// Which outputs are accelerations or forces of constraints, if steps do not project accelerations:
-/// then these swing from step to step, while positions are right; one line, empty if none is.
-std::string projection_warning(const Scene& scene, const StepSettings& settings);
-
 /// All that the model tells, one line each.
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,
                                           PenaltyFrom from);

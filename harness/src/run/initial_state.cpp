@@ -78,7 +78,7 @@ class SaddlePoint {
 }  // namespace
 
 State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v,
-                       double t) {
+                       double t, std::span<const double> lambda) {
   const int n = model.variables();
   const int m = model.constraints();
   const SaddlePoint saddle_point(model, t, q);
@@ -90,6 +90,9 @@ State consistent_state(const Model& model, std::span<const double> q, std::span<
   Vector right = Vector::Zero(n + m);
   for (int i = 0; i < n; ++i) right[i] = force[static_cast<std::size_t>(i)];
   Vector solution = Vector::Zero(n + m);
+  for (std::size_t k = 0; k < lambda.size(); ++k) {
+    solution[n + static_cast<int>(k)] = lambda[k];
+  }
   // Each round removes the error of -eps: lambda_k+1 from Phi_q a - eps (lambda_k+1 - lambda_k).
   // The change of lambda is eps (S + eps)^-1 times the one before, S = Phi_q M^-1 Phi_q^T, so it is
   // shorter each time: where it is not, what is left is rounding, which goes on for ever.

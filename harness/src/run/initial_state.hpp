@@ -9,9 +9,9 @@ namespace mbs {
 
 /// The state (q, v) at time t (s) completed by the a and lambda that solve Eq. (1) with Phi'' = 0:
 ///   M a + Phi_q^T lambda = Q,   Phi_q a = -(Phi_q' v + Phi_t').
-/// Where constraints are redundant, lambda is the solution that the iteration from zero reaches.
+/// Where constraints are redundant, lambda is the solution nearest to `lambda`, or to zero without.
 State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v,
-                       double t = 0.0);
+                       double t = 0.0, std::span<const double> lambda = {});
 
 /// consistent_state() at the model's initial position and velocity.
 State initial_state(const Model& model);

@@ -35,6 +35,7 @@ struct AccurateBounds {
   double local_error = 3e-3;
   double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
+  double force = 5e-2;  ///< of its largest value, of a force or acceleration asked for: ForceErrors
 };
 
 /// What errors are small against where the exact motion is not known, m: the length of the part

@@ -12,7 +12,6 @@
 
 #include "model_math/kinematics.hpp"
 #include "printable.hpp"
-#include "run/rounding.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -49,6 +48,7 @@ JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State star
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
       quarter_turn_(scene),
       local_errors_(scene, judge_.length(), watch_.passes_on()),
+      forces_(scene),
       adds_local_errors_(watch_.freedoms() > 0),
       is_driven_(is_driven(scene.model)) {}
 
@@ -68,15 +68,15 @@ void JudgedRun::begin(Access access) {
 
 double JudgedRun::time(long step) const { return static_cast<double>(step) * settings_.step.step; }
 
-/// The first step after `step` that is judged in any case: one in every `interval_` steps, at
-/// uneven places, so that a motion that repeats is not always met at the same one, and the last.
-long JudgedRun::judged_after(long step) const {
+/// The first step after `step` of one in every `interval` steps, at uneven places, so that a motion
+/// that repeats is not always met at the same one, and the last.
+long JudgedRun::uneven_after(long step, long interval) const {
   constexpr double kGoldenRatio = 0.6180339887498949;
-  for (long block = step == 0 ? 0 : (step - 1) / interval_;; ++block) {
+  for (long block = step == 0 ? 0 : (step - 1) / interval;; ++block) {
     const double turned = static_cast<double>(block + 1) * kGoldenRatio;
     const double share = turned - std::floor(turned);
-    const long place = static_cast<long>(share * static_cast<double>(interval_));
-    const long judged = std::min(steps_, block * interval_ + place + 1);
+    const long place = static_cast<long>(share * static_cast<double>(interval));
+    const long judged = std::min(steps_, block * interval + place + 1);
     if (judged > step || judged == steps_) return judged;
   }
 }
@@ -84,7 +84,7 @@ long JudgedRun::judged_after(long step) const {
 /// The next one after `step`, whose state this is: before torsions have turned so far that whole
 /// turns could be mistaken.
 long JudgedRun::judged_after(long step, const State& state) {
-  const long latest = judged_after(step);
+  const long latest = uneven_after(step, interval_);
   if (!quarter_turn_.is_needed()) return latest;
   looking_.begin();
   const double steps = quarter_turn_.time(time(step), state) / settings_.step.step;
@@ -179,6 +179,11 @@ void JudgedRun::judge(Sample& sample) {
   good_.step = step;
   std::swap(good_.state, sample.after);
   good_.figures = judge_.figures();
+  constexpr long kCompared = 8;  // times a run: each takes as long as some steps
+  if (forces_.is_needed() && step >= next_compared_) {
+    forces_.compare(time(step), good_.state);
+    next_compared_ = uneven_after(step, std::max(1L, steps_ / kCompared));
+  }
   note_beyond(step);
 }
 

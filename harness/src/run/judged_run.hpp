@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "run/branch_watch.hpp"
+#include "run/force_errors.hpp"
 #include "run/half_step_run.hpp"
 #include "run/local_errors.hpp"
 #include "run/local_half_steps.hpp"
@@ -71,7 +72,7 @@ class JudgedRun {
   };
 
   [[nodiscard]] double time(long step) const;
-  [[nodiscard]] long judged_after(long step) const;
+  [[nodiscard]] long uneven_after(long step, long interval) const;
   [[nodiscard]] long judged_after(long step, const State& state);
   void count(const StepOutcome& outcome);
   void copy(State& state);
@@ -124,7 +125,9 @@ class JudgedRun {
   std::optional<StepAgain> again_;       // of the trapezoidal forms
   long done_again_ = 0;                  // step
   LocalErrors local_errors_;
+  ForceErrors forces_;
   std::vector<double> off_;             // n, m
+  long next_compared_ = 0;              // step, of forces
   long next_noted_ = 2;                 // step; half the step is compared first after one
   std::optional<double> beyond_since_;  // s, by when it was found beyond AccurateBounds
   std::optional<HalfStepRun> half_;

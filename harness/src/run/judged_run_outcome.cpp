@@ -6,9 +6,21 @@
 
 #include "printable.hpp"
 #include "run/judged_run.hpp"
-#include "run/rounding.hpp"
 
 namespace mbs {
+namespace {
+
+/// What may bring forces and accelerations closer to those of the motion.
+std::string force_cure(const StepSettings& settings) {
+  if (settings.projections != Projections::both || settings.projections_every > 1) {
+    return ": --projections both in every step";
+  }
+  return settings.scheme == Scheme::penalty
+             ? ": a shorter step, or --scheme saddle-point if it is rounding"
+             : ": a shorter step may help";
+}
+
+}  // namespace
 
 /// The outcome of a run that went to its end.
 void JudgedRun::conclude() {
@@ -42,13 +54,10 @@ void JudgedRun::conclude() {
   add(watch_.doubt());
   if (!summary_.reason.empty()) summary_.reason += ": a shorter step may help";
   summary_.failed_at = beyond_since_;
-  const auto is_force = [](const Output& output) {
-    return output.kind == Output::Kind::constraint_force;
-  };
-  if (std::ranges::any_of(scene_.elements.outputs, is_force)) {
-    State state;
-    access_.get_state(state);
-    add(summary_.forces_lost = drowned_forces(scene_.model, *access_.model, settings_.step, state));
+  summary_.forces_lost = forces_.beyond();
+  if (!summary_.forces_lost.empty()) {
+    summary_.forces_lost += force_cure(settings_.step);
+    add(summary_.forces_lost);
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
@@ -75,7 +84,8 @@ void JudgedRun::note_beyond(long step) {
 
 bool JudgedRun::is_beyond() const {
   constexpr AccurateBounds accurate;
-  return judge_.is_degraded() || (half_ && !(half_->share_max() <= accurate.estimated_error)) ||
+  return judge_.is_degraded() || forces_.is_beyond() ||
+         (half_ && !(half_->share_max() <= accurate.estimated_error)) ||
          (adds_local_errors_ && !(local_share() <= accurate.local_error));
 }
 

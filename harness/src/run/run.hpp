@@ -59,7 +59,7 @@ struct RunSummary {
   RunStatus status = RunStatus::ok;
   std::string reason;  ///< one line, empty if ok
   /// The parts of `reason` of which half the step tells nothing: why the run may be on another
-  /// branch; why the constraint forces among the scene's outputs are mostly rounding.
+  /// branch; which of the forces and accelerations that the scene asks for are off.
   std::string branch_doubt, forces_lost;
   std::optional<double> failed_at;  ///< s, if not ok and it has an instant; degraded: by when
   long steps = 0;                   ///< done

@@ -12,7 +12,7 @@ from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 from study.tools.advise.timing import in_time
 
-FORCES_LOST = "forces-lost"  # of a pilot: it has all of its motion, but the forces that the scene asks for are rounding
+FORCES_LOST = "forces-lost"  # of a pilot: it has all of its motion, but a force or acceleration that the scene asks for is off
 EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact one, where it is known; an estimate, too
 # Judged after every step, as the usual judging of a few may keep pace with the motion and miss its worst; but where steps
 # times variables are above VALUES, of a share of them, JUDGED at least.

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from analysis.core.outcomes import FINISHED
 from study.tools.advise.choice import counts, enough, local_order, next_at, next_step
+from study.tools.advise.runner import FORCES_LOST
 from study.tools.advise.timing import beyond, in_time
 
 SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
@@ -11,7 +12,7 @@ NEAR = 1.15      # make up for it; a change of it while it promises less than th
 ROOM = 2, 16     # times the step of the best: how long another scheme's may be, of second order and of a higher one
 AHEAD = 4        # times the step of a pilot: how long the one is at most that it promises
 DOUBT = 2        # times its promise: what goes before a setting of which no run has come to its end
-LOST = (*FINISHED, "diverged", "not-converged", "wrong-branch", "refused")  # another step may mend what is wrong
+LOST = (*FINISHED, "diverged", "not-converged", "wrong-branch", "refused", FORCES_LOST)  # another step may mend what is wrong
 
 
 @dataclass
@@ -134,7 +135,7 @@ class Search:
         else:
             one.pilots.append(pilot)
             beside = [other for other in parent.pilots if other.valid and other.step == pilot.step] if parent else []
-            if pilot.status not in LOST:
+            if pilot.status not in LOST or (pilot.status == FORCES_LOST and beside):  # the change is to blame, not the step
                 self._settle(one, f"{pilot.status}: {pilot.reason}")
             elif pilot.valid and beside and pilot.estimate > 3.0**order * beside[0].estimate:  # a step of less than a third would mend it
                 self._settle(one, f"estimate {pilot.estimate:.2g} m at step {pilot.step:g} s, far above that of "

@@ -81,6 +81,8 @@ def _as_advised(one, advice, run, duration, seconds):
     row = advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds, repeats=1)
     if row["status"] not in FINISHED:
         one.reason = f"{row['status']} as it would be advised: {row['reason']}"
+    elif row["forces_lost"]:
+        one.reason = f"{FORCES_LOST} as it would be advised: {row['forces_lost']}"
     else:
         one.drop_late(row["step_us_p99"], advice.question.deadline_us, f" over {duration:g} s, as it would be advised")
     return one.reason
