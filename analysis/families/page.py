@@ -5,11 +5,13 @@ import pandas
 
 from analysis.core.text import answers as said, number
 from analysis.families import by_hand
-from analysis.families.bounds import KNOWN, bounds, compiled, decides
+from analysis.families.bounds import KNOWN, PANELS, bounds, compiled, decides
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, missed, summary
 from analysis.families.times import features_of
 
+# Of compiled code: who else there is, and the column of `compiled` that says where it is behind.
+RIVALS = (("the fastest library", "behind"), (f"the fastest library or {PANELS}", "behind_all"))
 # Numbers of the rule by hand: letter, meaning.
 SIGNS = {"dense": ("p", "operations to factorize the tangent, in % of those of a full one"), "per_column": ("c", "non-zeros of L per column"),
          "saddle_dense": ("p", "operations to factorize the saddle-point matrix, in % of those of a dense solver"),
@@ -26,8 +28,8 @@ def context(tables, view):
     own = compiled(tables)
     held, decided = tables["held"], winners[(winners.layer == "libraries") & winners.decided.fillna(False).astype(bool)]
     return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables), "known": KNOWN,
-            "behind": own[own.behind_all].sort_values("over_all").to_dict("records"), "decides": [(rival, found) for rival, which in (("the fastest library", "behind"), ("the fastest library or hybrid_dense/panels", "behind_all"))
-                                                                                if (found := decides(own, which))],
+            "behind": own[own.behind_all].sort_values("over_all").to_dict("records"),
+            "decides": [(rival, found) for rival, which in RIVALS if (found := decides(own, which))],
             "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, [(name, list(mine["where"])) for name, mine in rows.groupby("implementation", sort=False)])
                      for what, rows in lost.groupby(["status", "reason"], sort=False)],

@@ -16,7 +16,7 @@ def build(records, view):
         mine = [one for one in records if one.role.startswith(prefix or ("gate", "time"))]
         gate = [one for one in mine if one.role == f"{prefix}gate"]
         said = verdicts_of(gate)
-        rows = timing.processes(timing.counted([one for one in mine if one not in gate]))
+        rows = timing.processes(timing.counted([one for one in mine if one.role != f"{prefix}gate"]))
         twins += controls(rows)
         for scene in view.settings.get(key, []):
             here = rows[rows.scene == scene]

@@ -10,8 +10,8 @@
 
 namespace mbs::csc_mumps {
 
-/// A simulation in the form that `settings` ask for. Throws
-/// Unsupported if MUMPS cannot be set up for `model`.
+/// A simulation in the form that `settings` ask for. Throws Unsupported if MUMPS cannot be set up
+/// for `model`.
 std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings,
                                             Tuning tuning);
 

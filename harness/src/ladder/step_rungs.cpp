@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model_math/largest.hpp"
 #include "reference/reference_simulation.hpp"
 #include "scene/row_names.hpp"
 
@@ -105,12 +106,6 @@ std::string entry_name(const Model& model, Shape shape, std::size_t i) {
                          variable(i % n));
   }
   return "";
-}
-
-double largest_of(const std::vector<double>& x) {
-  double largest = 0.0;
-  for (const double value : x) largest = std::max(largest, std::abs(value));
-  return largest;
 }
 
 /// What may be allowed of a projected a': it is a* and a solved change, which off the constraints

@@ -7,6 +7,7 @@
 
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
+#include "model_math/largest.hpp"
 #include "model_math/least_change.hpp"
 #include "model_math/vector3.hpp"
 
@@ -70,12 +71,6 @@ std::vector<double> sizes_of_terms(const Model& model, double t, std::span<const
     result.push_back(coefficients * largest + value());
   }
   return result;
-}
-
-double largest_of(std::span<const double> v) {
-  double largest = 0.0;
-  for (const double value : v) largest = std::max(largest, std::abs(value));
-  return largest;
 }
 
 /// The size of each rate's terms where no velocity exceeds `fastest`, see velocity_violation().

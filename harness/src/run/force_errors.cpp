@@ -7,28 +7,22 @@
 #include <cmath>
 
 #include "model_math/kinematics.hpp"
+#include "model_math/largest.hpp"
 #include "printable.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
 #include "scene/output_columns.hpp"
 
 namespace mbs {
-namespace {
-
-double largest_of(const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double x : values) largest = std::max(largest, std::abs(x));
-  return largest;
-}
-
-}  // namespace
 
 ForceErrors::ForceErrors(const Scene& scene) : scene_(scene), outputs_(scene) {
   std::size_t column = 0;
   for (const Output& output : scene.elements.outputs) {
     const std::size_t columns = columns_of(output, scene.model.dimension()).size();
-    if (output.kind == Output::Kind::acceleration || output.kind == Output::Kind::constraint_force)
+    if (output.kind == Output::Kind::acceleration ||
+        output.kind == Output::Kind::constraint_force) {
       asked_.push_back({&output.name, column, columns});
+    }
     column += columns;
   }
 }

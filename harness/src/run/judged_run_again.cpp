@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "model_math/kinematics.hpp"
+#include "model_math/largest.hpp"
 #include "run/judged_run.hpp"
 
 namespace mbs {
@@ -92,11 +93,9 @@ long JudgedRun::first_across(long step) {
 /// Where drivers lead points about, their velocity is no direction that errors go on in, and a part
 /// of off_ is none. Half steps tell what is, unless off_ as a whole is too little to count.
 void JudgedRun::add_led_errors(const Sample& sample) {
-  double largest = 0.0;
-  for (const double off : off_) largest = std::max(largest, std::abs(off));
   const double negligible =
       0.1 * AccurateBounds{}.local_error * judge_.length() / static_cast<double>(steps_);
-  if (!(largest <= negligible)) {
+  if (!(largest_of(off_) <= negligible)) {
     if (!local_half_) {
       const auto begin = SampledTime::Clock::now();
       local_half_.emplace(access_.create, settings_.step);

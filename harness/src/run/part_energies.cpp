@@ -7,6 +7,7 @@
 
 #include "model_math/connected_parts.hpp"
 #include "model_math/kinematics.hpp"
+#include "model_math/largest.hpp"
 
 namespace mbs {
 namespace {
@@ -65,8 +66,7 @@ Model model_of(const Model& whole, const std::vector<int>& members, std::vector<
 bool is_against_rate(const Law& law) {
   if (!law.factor.is_constant()) return false;
   const Curve& curve = law.by_rate;
-  double largest = 0.0;
-  for (const double rate : curve.breaks) largest = std::max(largest, std::abs(rate));
+  const double largest = largest_of(curve.breaks);
   const double factor = law.factor.at(0.0).value, far = 1e6 * largest;
   const auto force = [&](double rate) { return factor * curve.at(rate).value; };
   const double rounding = 1e-9 * (std::abs(force(largest)) + std::abs(force(-largest)));

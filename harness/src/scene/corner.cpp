@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model_math/largest.hpp"
 #include "scene/time_functions.hpp"
 
 namespace mbs {
@@ -82,10 +83,8 @@ std::optional<std::size_t> jump_of(const std::vector<double>& times,
 
 std::optional<std::size_t> corner_of(const std::vector<double>& times,
                                      const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
   const double range = range_of(values, 0, values.size() - 1);
-  if (range <= kRounding * largest) return std::nullopt;
+  if (range <= kRounding * largest_of(values)) return std::nullopt;
   const auto jump = jump_of(times, values);
   return jump ? jump : stray_of(times, values, range);
 }
