@@ -94,10 +94,8 @@ def answers(tables, view):
         first, safest = whole[0], min(whole, key=lambda row: row["worst"])
         found.append({"text": f"The single library that costs least is {_price(first)}, over {first['of']} cells."
                               + (f" The one with the least worst case is {_price(safest)}." if safest != first else ""), "anchor": "regret"})
-    if control := said(tables["controls"]):
-        found.append({"text": control, "anchor": "carries"})
-    found.append({"text": f"Claims of the paper of 2008 (T, F: its tables and figures; C: its text): {told(tables['claims'])}.", "anchor": "claims"})
-    return found
+    claims = f"Claims of the paper of 2008 (T, F: its tables and figures; C: its text): {told(tables['claims'])}."
+    return [*found, {"text": f"{claims} {said(tables['controls'])}".rstrip(), "anchor": "claims"}]
 
 
 def _hybrid(cells):
